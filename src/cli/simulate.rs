@@ -28,7 +28,7 @@ use super::progress::{MOTIONS, PartsBar};
 use super::session;
 use super::shard::{self, Points, ShardArguments};
 use super::trajectory;
-use super::walls::WallArguments;
+use super::walls::{EventArguments, WallArguments};
 use super::{Common, Failure, Format, Outcome, Work, json_text, text_writer};
 
 /// The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time; or any
@@ -53,12 +53,14 @@ pub struct SimulateArguments {
     pub(super) at: Vec<String>,
     #[command(flatten)]
     pub(super) walls: WallArguments,
+    #[command(flatten)]
+    pub(super) events: EventArguments,
     /// Look at an equation or a mechanism of one's own once in this time (Poincaré's section):
     /// 2*pi/Omega
     #[arg(long, value_name = "PERIOD", conflicts_with = "section")]
     pub(super) every: Option<String>,
     /// Look at it where an expression of its coordinates, velocities and the time grows through
-    /// zero: x', "x - 0.1"; or just before each impact on a wall: impacts
+    /// zero: x', "x - 0.1"; or just before each impact on a wall: impacts; or each event: events
     #[arg(long, value_name = "EXPRESSION", allow_hyphen_values = true)]
     pub(super) section: Option<String>,
     /// Look at it from this time on, when it has settled
@@ -152,6 +154,7 @@ fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
         ("--at", !arguments.at.is_empty(), "the keys of a file"),
         ("--wall", !arguments.walls.wall.is_empty(), "barrier in [pendulum]"),
         ("--restitution", !arguments.walls.restitution.is_empty(), "restitution in [contact]"),
+        ("--event", !arguments.events.event.is_empty(), "barrier in [pendulum]"),
         ("--every", arguments.every.is_some(), "--sample"),
         ("--section", arguments.section.is_some(), "--sample"),
         ("--lyapunov", arguments.lyapunov, "--sample"),

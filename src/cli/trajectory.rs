@@ -166,6 +166,8 @@ fn refused(error: TrajectoryError) -> Failure {
 fn course(problem: &Problem, asked: &SimulateArguments) -> Result<TrajectoryRequest, Failure> {
     let mut course = problem.course().map_err(|error| Failure::refused(&error, error.help()))?;
     course = course.with_walls(asked.walls.walls(problem)?);
+    let events = asked.events.events(problem, &course.rates.states)?;
+    course = course.with_events(events);
     course.section = section(&course, asked)?;
     let needed = course.parameters();
     let values = exact_values(&asked.at, problem.values_with(&needed))?.unwrap_or_default();
@@ -263,6 +265,11 @@ fn section(
                 .to_owned(),
         )),
         (None, Some("impacts")) => Ok(Some(PoincareSection::Impacts)),
+        (None, Some("events")) if course.events.is_empty() => Err(Failure::Usage(
+            "--section events: there are no events: give --event \"x > 1: x' = -x'\", or [[event]] in the file"
+                .to_owned(),
+        )),
+        (None, Some("events")) => Ok(Some(PoincareSection::Events)),
         (None, Some(text)) => match read("section", text)? {
             expression if moves(&expression) => Ok(Some(PoincareSection::Rising(expression))),
             _ => Err(Failure::Usage(format!(

@@ -1,9 +1,11 @@
-//! `--wall` and `--restitution`: rigid walls of the command line or of a file.
+//! `--wall` and `--restitution`: rigid walls of the command line or of a file; `--event`: its events.
 
 use clap::Args;
 
+use crate::event::StateEvent;
 use crate::expr::{Expr, expression_in_grammar};
 use crate::problem::Problem;
+use crate::symbol::Symbol;
 use crate::wall::Wall;
 
 use super::Failure;
@@ -76,5 +78,36 @@ impl WallArguments {
             }
         }
         Ok(walls)
+    }
+}
+
+/// The option of a command that takes events.
+#[derive(Args, Clone, Default)]
+pub(super) struct EventArguments {
+    /// An event: where a condition comes true, states are set ("x < 0: x' = -0.8*x'",
+    /// "sin(w*t) > 0: x' = x' + p; y = 0"); = in place of < or > counts in both directions; repeatable
+    #[arg(long, value_name = "CONDITION: STATE = VALUE", allow_hyphen_values = true)]
+    pub(super) event: Vec<String>,
+}
+
+impl EventArguments {
+    /// The events of a motion with these states: those of the command line, or else of the file.
+    ///
+    /// # Errors
+    /// A text that is no event.
+    pub(super) fn events(
+        &self,
+        problem: &Problem,
+        states: &[Symbol],
+    ) -> Result<Vec<StateEvent>, Failure> {
+        let (texts, name) = match self.event.is_empty() {
+            true => (problem.events(), "[[event]]"),
+            false => (self.event.clone(), "--event"),
+        };
+        let read = |text: &String| {
+            StateEvent::parse(text, states)
+                .map_err(|error| Failure::because(format!("{name}: {error}")))
+        };
+        texts.iter().map(read).collect()
     }
 }

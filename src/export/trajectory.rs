@@ -5,7 +5,7 @@ use super::csv::{end, line};
 use super::figure::{CurveStyle, FigureError, Panel, Points, curve, figure, panel};
 use crate::decimal::decimal;
 use crate::report::{MotionSweep, TrajectoryReport};
-use crate::report::{section_in_words, wall_in_words};
+use crate::report::{event_in_words, section_in_words, wall_in_words};
 use crate::symbol::Symbol;
 use crate::trajectory::in_words;
 use crate::trajectory::{Crossing, PoincareSection, SweptMotion, Trajectory, TrajectoryRequest};
@@ -82,10 +82,15 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
         .into_iter()
         .filter_map(|time| Some((time, motion.states_at(time)?)))
         .collect();
-    // A velocity jumps at an impact: both sides of it are drawn.
-    for impact in &motion.walls.impacts {
-        let sides = [motion.states_at(impact.time), motion.states_after(impact.time)];
-        states.extend(sides.into_iter().flatten().map(|state| (impact.time, state)));
+    // States jump at impacts and events: both sides of them are drawn.
+    let impacts = motion.walls.impacts.iter().map(|impact| impact.time);
+    let mut jumps: Vec<f64> =
+        impacts.chain(motion.events.occurrences.iter().map(|event| event.time)).collect();
+    jumps.sort_by(f64::total_cmp);
+    jumps.dedup();
+    for time in jumps {
+        let sides = [motion.states_at(time), motion.states_after(time)];
+        states.extend(sides.into_iter().flatten().map(|state| (time, state)));
     }
     states.sort_by(|one, other| one.0.total_cmp(&other.0));
     let in_time: Vec<Points> = (0..count)
@@ -105,13 +110,16 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
     figure(&panels, &format!("{}.", equations_in_words(course)))
 }
 
-/// The equations and the walls of a problem, in words.
+/// The equations, the walls and the events of a problem, in words.
 fn equations_in_words(course: &TrajectoryRequest) -> String {
     let equations = course.equations.iter().map(|left| format!("{left} = 0"));
     let several = course.walls.len() > 1;
     let walls = course.walls.iter().enumerate();
     let walls = walls.map(|(index, wall)| wall_in_words(index, wall, several));
-    equations.chain(walls).collect::<Vec<String>>().join(", ")
+    let several = course.events.len() > 1;
+    let events = course.events.iter().enumerate();
+    let events = events.map(|(index, event)| event_in_words(index, event, several));
+    equations.chain(walls).chain(events).collect::<Vec<String>>().join(", ")
 }
 
 /// The states on a section: each coordinate with its velocity.

@@ -68,6 +68,8 @@ pub struct Problem {
     pub material: Vec<MaterialSection>,
     /// Rigid walls.
     pub wall: Vec<WallSection>,
+    /// Events.
+    pub event: Vec<EventSection>,
     /// The variables of a search for the best design, and its limits.
     pub limits: LimitsSection,
     /// The options of its genetic algorithm.
@@ -231,6 +233,22 @@ pub struct WallSection {
     pub bound: String,
     /// The coefficient of restitution: a number, or text such as `"e"`.
     pub restitution: Option<toml::Value>,
+}
+
+/// `[[event]]`: a condition, and what is set where it comes true.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EventSection {
+    /// The condition: `"x > 1"` where that comes true, `"x = 1"` in either direction.
+    pub when: String,
+    /// The states that are set, as a list or separated by `;`: `"x' = -0.8*x'"`.
+    #[serde(deserialize_with = "assignments")]
+    pub set: String,
+}
+
+/// A text, or a list of texts, which are joined by `; `.
+fn assignments<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    Ok(equations(deserializer)?.unwrap_or_default())
 }
 
 /// `[limits]`: what a search for the best design may vary between, in SI units, and what it must

@@ -97,6 +97,7 @@ fn readers(section: &str, key: &str) -> &'static [ReadingCommand] {
         ("run", "step_limit") => &[Impact, Simulate, Materials, Trajectory, Optimize],
         ("", "[[material]]") => &[Materials, Optimize],
         ("", "[[wall]]") => &[Trajectory, Response, Orbits],
+        ("", "[[event]]") => &[Trajectory],
         ("limits" | "genetic", _) => &[Optimize],
         _ => &[Impact, Simulate, Materials, Optimize],
     }
@@ -134,7 +135,7 @@ const SECTIONS: [KeySection; 15] = [
     ("sphere", keys_of::<SphereSection>),
     ("barrier", keys_of::<BarrierSection>),
     ("run", keys_of::<Run>),
-    ("", || &["[[material]]", "[[wall]]"]),
+    ("", || &["[[material]]", "[[wall]]", "[[event]]"]),
     ("limits", keys_of::<LimitsSection>),
     ("genetic", keys_of::<GeneticSection>),
 ];
@@ -194,7 +195,7 @@ pub(super) fn given(file: &toml::Table) -> Vec<String> {
             toml::Value::Table(_) if name == "values" || name == "units" => {
                 keys.push(format!("[{name}]"))
             }
-            toml::Value::Array(_) if ["material", "wall"].contains(&name.as_str()) => {
+            toml::Value::Array(_) if ["material", "wall", "event"].contains(&name.as_str()) => {
                 keys.push(format!("[[{name}]]"))
             }
             toml::Value::Table(section) => {
@@ -271,6 +272,6 @@ mod tests {
             let section = format!("[{name}]");
             assert!(known.iter().any(|key| key == name || key.contains(&section)), "{name}");
         }
-        assert_eq!(known.len(), 99);
+        assert_eq!(known.len(), 100);
     }
 }

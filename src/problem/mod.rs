@@ -42,9 +42,9 @@ use crate::trajectory::TrajectoryError;
 use crate::values::ValueError;
 
 pub use document::{
-    Barrier, BarrierSection, BarrierSide, Contact, Damping, DesignSection, Excitation,
-    GeneticSection, LagrangianSection, LimitsSection, MaterialSection, NoBarrier, Objectives,
-    Order, Pendulum, PrimarySection, Problem, Range, Run, SphereSection, WallSection,
+    Barrier, BarrierSection, BarrierSide, Contact, Damping, DesignSection, EventSection,
+    Excitation, GeneticSection, LagrangianSection, LimitsSection, MaterialSection, NoBarrier,
+    Objectives, Order, Pendulum, PrimarySection, Problem, Range, Run, SphereSection, WallSection,
 };
 pub use formula::FormulaProblem;
 pub use keys::{ReadingCommand, keys};

@@ -1,4 +1,4 @@
-//! The rigid walls of a problem file.
+//! The rigid walls and the events of a problem file.
 
 use super::formula::number_or_text;
 use super::{Problem, ProblemError};
@@ -30,5 +30,18 @@ impl Problem {
             Ok((bound.clone(), restitution.transpose()?))
         };
         self.wall.iter().map(|own| (&own.bound, own.restitution.as_ref())).map(wall).collect()
+    }
+
+    /// The events of the file, in the grammar of [`parse_event`](crate::expr::parse_event).
+    ///
+    /// ```
+    /// use lindstedt::problem::Problem;
+    ///
+    /// let text = "equation = \"x'' + x = 0\"\n[[event]]\nwhen = \"x < 0\"\nset = [\"x = 0\", \"x' = -x'\"]";
+    /// assert_eq!(text.parse::<Problem>()?.events(), ["x < 0: x = 0; x' = -x'"]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn events(&self) -> Vec<String> {
+        self.event.iter().map(|event| format!("{}: {}", event.when, event.set)).collect()
     }
 }

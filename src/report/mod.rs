@@ -65,7 +65,7 @@ pub use slow_equations::{SlowReport, slow_equations};
 pub use solution::solution;
 pub use stability::{StabilityReport, stability};
 pub use trajectory::{Doubt, MotionSweep, TRUSTED, TrajectoryReport, motion_sweep, trajectory};
-pub(crate) use trajectory::{section_in_words, wall_in_words};
+pub(crate) use trajectory::{event_in_words, section_in_words, wall_in_words};
 
 use std::borrow::Cow;
 

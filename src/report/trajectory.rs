@@ -5,12 +5,13 @@ use std::borrow::Cow;
 use super::{Block, Document, Heading};
 use crate::decimal::{decimal, significant};
 use crate::derivation::DerivationLine;
+use crate::event::StateEvent;
 use crate::expr::Expr;
 use crate::symbol::Symbol;
 use crate::system::{Integrator, PathEnd};
 use crate::trajectory::{
-    Crossing, DISPLACEMENT, Impact, LyapunovExponent, PoincareSection, SweptMotion, Trajectory,
-    TrajectoryRequest, WallRecord, WallRest, in_words,
+    Crossing, DISPLACEMENT, EventOccurrence, Impact, LyapunovExponent, PoincareSection,
+    SweptMotion, Trajectory, TrajectoryRequest, WallRecord, WallRest, in_words,
 };
 use crate::wall::Wall;
 
@@ -137,6 +138,9 @@ pub fn trajectory<'a>(report: &TrajectoryReport<'a>) -> Document<'a> {
     if !course.walls.is_empty() {
         sections.push(on_walls(motion));
     }
+    if !course.events.is_empty() {
+        sections.push(at_events(motion));
+    }
     sections.push(account(report));
     Document { sections }
 }
@@ -234,6 +238,75 @@ fn on_walls<'a>(motion: &Trajectory) -> Vec<Block<'a>> {
     blocks
 }
 
+/// The events, and the first times at which they took place.
+fn at_events<'a>(motion: &Trajectory) -> Vec<Block<'a>> {
+    let course = &motion.course;
+    let several = course.events.len() > 1;
+    let mut blocks: Vec<Block> = course
+        .events
+        .iter()
+        .enumerate()
+        .map(|(index, event)| Block::Note(event_in_words(index, event, several)))
+        .collect();
+    let occurrences = &motion.events.occurrences;
+    let count = occurrences.len();
+    let mut words = format!("{count} event{}", if count == 1 { "" } else { "s" });
+    if count > MOST_IMPACTS {
+        words.push_str(&format!("; the first {MOST_IMPACTS}, all of them as JSON"));
+    }
+    blocks.push(Block::Heading(words));
+    // The states that any event sets.
+    let states = course.rates.states.iter().enumerate();
+    let set: Vec<(usize, &Symbol)> = states
+        .filter(|(_, state)| {
+            course.events.iter().flat_map(|event| &event.assignments).any(|(own, _)| own == *state)
+        })
+        .collect();
+    let with_loss = occurrences.iter().any(|event| event.loss.is_some());
+    let mut head = vec!["t"];
+    head.extend(several.then_some("event"));
+    for (_, state) in &set {
+        // The names of a table must have the lifetime of the program.
+        head.extend(
+            ["before", "behind"].map(|side| Symbol::new(&format!("{state} {side}")).name()),
+        );
+    }
+    head.extend(with_loss.then_some("energy lost"));
+    let row = |event: &EventOccurrence| -> Vec<String> {
+        let mut cells = vec![decimal(event.time)];
+        cells.extend(several.then(|| (event.event + 1).to_string()));
+        for (index, _) in &set {
+            cells.extend([&event.before, &event.after].map(|state| decimal(state[*index])));
+        }
+        cells.extend(with_loss.then(|| event.loss.map_or_else(String::new, decimal)));
+        cells
+    };
+    if count > 0 {
+        blocks.push(Block::table(head, occurrences.iter().take(MOST_IMPACTS).map(row)));
+    }
+    for index in 0..course.events.len() {
+        if occurrences.iter().all(|event| event.event != index) {
+            let number = if several { format!(" {}", index + 1) } else { String::new() };
+            blocks.push(Block::Note(format!("event{number} does not take place")));
+        }
+    }
+    blocks.extend(motion.events.order_matters.map(|time| {
+        Block::Note(format!(
+            "at t = {} several events take place at once, and their order matters: they are taken in the order in which they are given",
+            decimal(time)
+        ))
+    }));
+    blocks
+}
+
+/// An event in words.
+pub(crate) fn event_in_words(index: usize, event: &StateEvent, several: bool) -> String {
+    let number = if several { format!(" {}", index + 1) } else { String::new() };
+    let set = event.assignments.iter().map(|(state, value)| format!("{state} = {value}"));
+    let set = set.collect::<Vec<String>>().join(", ");
+    format!("event{number} where {} sets {set}", event.condition())
+}
+
 /// A wall in words.
 pub(crate) fn wall_in_words(index: usize, wall: &Wall, several: bool) -> String {
     let number = if several { format!(" {}", index + 1) } else { String::new() };
@@ -262,6 +335,7 @@ pub(crate) fn section_in_words(section: &PoincareSection) -> String {
             format!("Section where {expression} grows through zero")
         }
         PoincareSection::Impacts => "Section just before each impact".to_owned(),
+        PoincareSection::Events => "Section just before each event".to_owned(),
     }
 }
 
@@ -286,12 +360,17 @@ pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
     if with_walls {
         head.push("impacts");
     }
+    let with_events = !course.events.is_empty();
+    if with_events {
+        head.push("events");
+    }
     let rows = sweep.motions.iter().map(|motion| {
         let numbers = motion.values.iter().chain(motion.extremes.iter().flatten());
         let numbers = numbers.map(|value| decimal(*value));
         let counted = on_section.then(|| motion.crossings.len().to_string());
         let hits = with_walls.then(|| motion.impacts.to_string());
-        numbers.chain(counted).chain(hits).collect()
+        let events = with_events.then(|| motion.events.to_string());
+        numbers.chain(counted).chain(hits).chain(events).collect()
     });
     let mut words = format!("{} motions to t = {}", sweep.motions.len(), decimal(course.duration));
     if course.after > 0.0 {

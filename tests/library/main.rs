@@ -13,6 +13,7 @@ mod damped_certificate;
 mod default_method;
 mod driven_certificate;
 mod equilibria;
+mod events;
 mod exact_numbers;
 mod expr_properties;
 mod friction;

@@ -171,6 +171,8 @@ fn documents() -> Vec<(String, Value)> {
         let file = format!("{}/examples/walls/{file}.toml", env!("CARGO_MANIFEST_DIR"));
         add(&["simulate", &file, "--from", start, "--until", "2"]);
     }
+    let clock = format!("{}/examples/events/clock.toml", env!("CARGO_MANIFEST_DIR"));
+    add(&["simulate", &clock, "--from", "x=-1", "--until", "20"]);
     add(&["simulate", "x'' + x'/5 + x = 0", "--from", "x=1", "--lyapunov"]);
     let wall = ["--wall", "x < 1", "--restitution", "0.8", "--vary", "F=0.5:0.7"];
     add(&[&["response", "x'' + x'/10 + x = F*cos(t)"][..], &wall].concat());

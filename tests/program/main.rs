@@ -7,6 +7,7 @@ mod catalog;
 mod certificates;
 mod documents;
 mod errors;
+mod events;
 mod fit;
 mod gallery;
 mod impact_files;

@@ -246,6 +246,8 @@ pub enum PathEnd {
     Sticks,
     /// The motion has passed a rigid wall.
     PassesWall,
+    /// Events follow each other faster than they can be told apart.
+    EventsAccumulate,
     /// The run was interrupted.
     Interrupted,
 }

@@ -10,7 +10,7 @@
 #![warn(missing_docs)]
 
 #[doc(no_inline)]
-pub use lindstedt_dynamics::{coupled, mechanics, system, wall};
+pub use lindstedt_dynamics::{coupled, event, mechanics, system, wall};
 #[doc(no_inline)]
 pub use lindstedt_expr::{decimal, exact, expr, parallel, symbol, values};
 #[doc(no_inline)]

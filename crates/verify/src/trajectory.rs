@@ -13,6 +13,8 @@
 //! between two bodies, holds something, it stays until the force on it is more than friction bears.
 
 mod energy;
+mod event_run;
+mod events;
 mod hold;
 mod prepared;
 mod pulse;
@@ -20,10 +22,10 @@ mod resting;
 mod root;
 mod section;
 mod sensitivity;
+mod state_functions;
 mod surplus;
 mod sweep;
 mod two_sided;
-mod wall_run;
 mod walls;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -32,6 +34,7 @@ use thiserror::Error;
 
 use crate::coupled::CoupledEquations;
 use crate::decimal::decimal;
+use crate::event::StateEvent;
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError, LostDigits};
 use crate::interrupt::Interrupt;
 use crate::mechanics::{EquationsOfMotion, MechanicsError, Mechanism, Rates};
@@ -48,13 +51,15 @@ pub use section::{Crossing, MOST_CROSSINGS, PoincareSection};
 pub use sensitivity::{DISPLACEMENT, LyapunovExponent};
 pub use sweep::{SweptMotion, sweep};
 
+use event_run::{EventRun, RunEnd};
+use events::{CompiledEvents, WORK_OF_EVENTS};
+pub use events::{EventOccurrence, EventRecord};
 use hold::Layout;
 use resting::resting_equations;
 pub(crate) use root::roots_across_corners;
 use section::OnSection;
 pub(crate) use surplus::of_one_size as shares_of_one_size;
 pub(crate) use two_sided::by_sides;
-use wall_run::WallRun;
 use walls::{CompiledWalls, WORK_OF_WALLS};
 pub use walls::{Impact, WallRecord, WallRest};
 
@@ -74,6 +79,8 @@ pub struct TrajectoryRequest {
     pub mass: Option<Vec<Vec<Expr>>>,
     /// The rigid walls.
     pub walls: Vec<Wall>,
+    /// The events.
+    pub events: Vec<StateEvent>,
     /// A number for every parameter.
     pub values: BTreeMap<Symbol, f64>,
     /// Initial positions and velocities, in the order of the states.
@@ -114,6 +121,8 @@ pub struct Trajectory {
     pub balance: Option<EnergyBalance>,
     /// The impacts on walls and the rests on them.
     pub walls: WallRecord,
+    /// The events that took place.
+    pub events: EventRecord,
     pieces: Vec<TrajectorySegment>,
     on_section: OnSection,
     reason: PathEnd,
@@ -184,6 +193,32 @@ pub enum TrajectoryError {
     /// A wall whose gap cannot be differentiated.
     #[error("the gap `{0}` of a wall has no second rate along the motion")]
     WallWithCorner(Expr),
+    /// An event one of whose expressions has no value.
+    #[error("the event `{0}`: {1}")]
+    EventUndefined(Box<StateEvent>, EvaluationError),
+    /// An event, counted from 1, whose guard has no value at the start.
+    #[error("the condition of event {0} has no value at the start")]
+    GuardUndefined(usize),
+    /// An event that sets a state to no number.
+    #[error("event {event} sets `{name}` to a value that is not a number, at t = {}", decimal(*.time))]
+    ResetUndefined {
+        /// The event, counted from 1.
+        event: usize,
+        /// The state.
+        name: Symbol,
+        /// The time.
+        time: f64,
+    },
+    /// An event that puts the motion behind a wall.
+    #[error("an event puts the motion behind a wall at t = {}: `{gap}` is {} there and must not be negative", decimal(*.time), decimal(*.value))]
+    EventBehindWall {
+        /// The gap of the wall.
+        gap: Expr,
+        /// Its value behind the event.
+        value: f64,
+        /// The time.
+        time: f64,
+    },
     /// A wall whose gap has no value.
     #[error("the gap `{0}` of a wall: {1}")]
     WallUndefined(Expr, EvaluationError),
@@ -195,6 +230,13 @@ pub enum TrajectoryError {
 fn names(symbols: &[Symbol]) -> String {
     let names: Vec<String> = symbols.iter().map(|symbol| format!("`{symbol}`")).collect();
     names.join(", ")
+}
+
+/// The index among all states of the work of this name; `None` if it is not accounted for.
+fn work_of(course: &TrajectoryRequest, name: &str) -> Option<usize> {
+    let energy = course.energy.as_ref().filter(|_| course.missing_for_energy().is_empty())?;
+    let place = energy.powers.iter().position(|(own, _)| own == name)?;
+    Some(course.rates.states.len() + place)
 }
 
 /// The times at which energy is accounted for.
@@ -284,6 +326,33 @@ impl TrajectoryRequest {
         Self { walls, ..self }
     }
 
+    /// Returns the problem with events, whose work is accounted for where there is an energy.
+    ///
+    /// ```
+    /// # use lindstedt_verify as lindstedt;
+    /// use lindstedt::Oscillator;
+    /// use lindstedt::event::StateEvent;
+    /// use lindstedt::trajectory::TrajectoryRequest;
+    ///
+    /// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + x = 0")?);
+    /// let kick = StateEvent::parse("x > 0: x' = x' + 1", &course.rates.states)?;
+    /// course = course.with_events(vec![kick]);
+    /// course.begin("x".into(), -1.0)?;
+    /// course.duration = 4.0;
+    /// let motion = course.follow()?;
+    /// // The kick at t = pi/2 doubles the amplitude.
+    /// assert!((motion.events.occurrences[0].after[1] - 2.0).abs() < 1e-14);
+    /// assert!((motion.states_at(3.0).ok_or("a state")?[0] + 2.0 * 3.0_f64.cos()).abs() < 1e-13);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn with_events(mut self, events: Vec<StateEvent>) -> Self {
+        if let (Some(energy), false) = (&mut self.energy, events.is_empty()) {
+            energy.powers.push((WORK_OF_EVENTS.to_owned(), Expr::zero()));
+        }
+        Self { events, ..self }
+    }
+
     /// The initial value problem of coordinates and velocities with these rates, from rest at zero for 50
     /// units of time, without an account of energy.
     pub(crate) fn of_rates(coordinates: Vec<Symbol>, rates: Rates) -> Self {
@@ -304,6 +373,7 @@ impl TrajectoryRequest {
             energy,
             mass: None,
             walls: vec![],
+            events: vec![],
             values: BTreeMap::new(),
             duration: 50.0,
             section: None,
@@ -342,7 +412,8 @@ impl TrajectoryRequest {
         let section = self.section.iter().filter_map(PoincareSection::expression);
         let walls = self.walls.iter().flat_map(|wall| [&wall.gap, &wall.restitution]);
         let mass = self.mass.iter().flatten().flatten().filter(|_| !self.walls.is_empty());
-        let all = self.rates.right.iter().chain(section).chain(walls).chain(mass);
+        let events = self.events.iter().flat_map(StateEvent::expressions);
+        let all = self.rates.right.iter().chain(section).chain(walls).chain(mass).chain(events);
         let all = all.flat_map(Expr::symbols);
         all.filter(|name| !self.is_variable(*name)).collect()
     }
@@ -415,7 +486,7 @@ impl TrajectoryRequest {
     /// As [`TrajectoryRequest::follow`].
     pub fn follow_by(self, integrator: Integrator) -> Result<Trajectory, TrajectoryError> {
         let ready = self.ready(integrator)?;
-        let mut run = WallRun::new(&self, &ready, (0.0, ready.start(&self)), integrator)?;
+        let mut run = EventRun::new(&self, &ready, (0.0, ready.start(&self)), integrator)?;
         run.complete()?;
         let ended = run.finish();
         self.motion(ended, integrator)
@@ -440,17 +511,17 @@ impl TrajectoryRequest {
             Ok::<_, TrajectoryError>((ready, start))
         };
         let all: Vec<_> = courses.iter().map(made_ready).collect();
-        let mut runs: Vec<Result<WallRun, TrajectoryError>> = courses
+        let mut runs: Vec<Result<EventRun, TrajectoryError>> = courses
             .iter()
             .zip(&all)
             .map(|(course, ready)| {
                 let (ready, start) = ready.as_ref().map_err(Clone::clone)?;
-                WallRun::new(course, ready, (0.0, start.clone()), Integrator::Taylor)
+                EventRun::new(course, ready, (0.0, start.clone()), Integrator::Taylor)
             })
             .collect();
         // Each round goes on to the next impact of every motion.
         loop {
-            let is_going = |run: &mut Result<WallRun, _>| {
+            let is_going = |run: &mut Result<EventRun, _>| {
                 run.as_mut().is_ok_and(|run| !run.has_ended() && run.next_flight().is_ok())
             };
             let going: Vec<bool> = runs.iter_mut().map(is_going).collect();
@@ -473,7 +544,7 @@ impl TrajectoryRequest {
                 }
             }
         }
-        let ended = |run: Result<WallRun, TrajectoryError>| {
+        let ended = |run: Result<EventRun, TrajectoryError>| {
             run.and_then(|mut run| {
                 run.complete()?;
                 Ok(run.finish())
@@ -490,7 +561,7 @@ impl TrajectoryRequest {
     /// The motion of pieces that have been followed.
     fn motion(
         self,
-        (pieces, reason, walls): (Vec<TrajectorySegment>, PathEnd, WallRecord),
+        RunEnd { pieces, reason, walls, events }: RunEnd,
         integrator: Integrator,
     ) -> Result<Trajectory, TrajectoryError> {
         let mut motion = Trajectory {
@@ -498,6 +569,7 @@ impl TrajectoryRequest {
             integrator,
             balance: None,
             walls,
+            events,
             pieces,
             on_section: OnSection::default(),
             reason,
@@ -569,6 +641,19 @@ impl TrajectoryRequest {
             let power = if name == WORK_OF_WALLS { &on_walls.power } else { power };
             right.push(roots_across_corners(power, &self.values)?);
         }
+        let first = states.len();
+        let mut watched = Vec::new();
+        for event in &self.events {
+            // The side from which a guard is watched and its level change at events alone.
+            let own = ["side", "level"].map(|name| {
+                let name = fresh(name, &taken);
+                taken.push(name);
+                name
+            });
+            states.extend(own);
+            right.extend(own.map(|_| Expr::zero()));
+            watched.push(events::watched(event, own));
+        }
         let values: BTreeMap<Symbol, f64> =
             needed.iter().filter_map(|name| Some((*name, *self.values.get(name)?))).collect();
         let critical = pulse::critical_times(&right, &states, &values, self.duration);
@@ -578,7 +663,7 @@ impl TrajectoryRequest {
         let section = self.section.as_ref();
         let mut events = section.map_or(vec![], |section| section.events(&moving));
         let recorded = events.len();
-        let guards = on_walls.guards;
+        let guards = [on_walls.guards, watched].concat();
         events.extend(guards.iter().map(|guard| Event::stop(guard.clone()).falling()));
         let Rates { states, right } = moving;
         Ok(Ready {
@@ -586,6 +671,7 @@ impl TrajectoryRequest {
             recorded,
             guards,
             walls: if resting.is_empty() { CompiledWalls::new(self)? } else { None },
+            events: if resting.is_empty() { CompiledEvents::new(self, first)? } else { None },
             states,
             right,
             values,
@@ -597,7 +683,7 @@ impl TrajectoryRequest {
 /// The equations of a course, made ready to be followed.
 #[derive(Clone, Debug)]
 struct Ready {
-    /// Coordinates, velocities and works.
+    /// Coordinates, velocities, works, and the side and level of the guard of each event.
     states: Vec<Symbol>,
     /// The rate of each, roots at corners as they are followed.
     right: Vec<Expr>,
@@ -608,10 +694,13 @@ struct Ready {
     solver: Solver,
     /// The number of events of the section.
     recorded: usize,
-    /// Functions at whose fall through zero a stretch ends: the gap of each wall, or its force.
+    /// Functions at whose fall through zero a stretch ends: the gap of each wall, or its force; then the
+    /// watched guard of each event.
     guards: Vec<Expr>,
     /// The walls, of a flight.
     walls: Option<CompiledWalls>,
+    /// The events, of a flight.
+    events: Option<CompiledEvents>,
 }
 
 impl Ready {
@@ -638,6 +727,7 @@ impl Ready {
             recorded: self.recorded,
             guards: self.guards.clone(),
             walls: self.walls.as_ref().map(|walls| walls.with_numbers(course)).transpose().ok()?,
+            events: self.events.as_ref().map(|events| events.with_numbers(course)),
             solver: solver.with_critical_times(&critical),
             values,
             critical,
@@ -705,6 +795,7 @@ impl Trajectory {
         let count = self.course.rates.states.len();
         let at = |time: f64, state: &[f64]| {
             let (state, works) = state.split_at(count);
+            let works = &works[..energy.powers.len()];
             // Kinetic and potential energy may cancel each other: the largest of them counts beside
             // their sum.
             let parts = parts.iter().map(|part| part(time, state).abs());
@@ -865,6 +956,9 @@ pub fn in_words(end: PathEnd) -> &'static str {
         PathEnd::Singular => "where a state or its rate has no value, or no next step",
         PathEnd::PassesWall => {
             "where it would pass a wall: impacts there follow each other faster than rounding resolves"
+        }
+        PathEnd::EventsAccumulate => {
+            "where events follow each other ever faster: infinitely many take a finite time, and a motion that then rests needs a rigid wall"
         }
         PathEnd::Overflow => "where a state leaves the range of numbers, 1e300",
         PathEnd::Sticks => {

@@ -6,11 +6,13 @@ use serde::{Deserialize, Serialize};
 
 use super::DocumentKind;
 use super::number::{Map, named, texts};
+use crate::event::StateEvent;
 use crate::report::MotionSweep;
 use crate::report::TrajectoryReport;
 use crate::system::{Integrator, PathEnd};
 use crate::trajectory::{
-    Crossing, Impact, PoincareSection, Trajectory, TrajectoryRequest, WallRest, in_words,
+    Crossing, EventOccurrence, Impact, PoincareSection, Trajectory, TrajectoryRequest, WallRest,
+    in_words,
 };
 use crate::wall::Wall;
 
@@ -57,6 +59,9 @@ pub struct MotionDocument {
     /// The walls with the impacts on them; left out without a wall.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub walls: Option<WallsDocument>,
+    /// The events; left out without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub events: Option<EventsDocument>,
     /// Why it ends where it does.
     pub stopped: String,
     /// Whether it was followed as long as asked, its energy is accounted for and the other
@@ -188,6 +193,71 @@ pub struct WallRestDocument {
     pub after_chatter: bool,
 }
 
+/// The events of a motion.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+pub struct EventsDocument {
+    /// The events.
+    pub events: Vec<EventDocument>,
+    /// The times at which they took place, in order.
+    pub occurrences: Vec<EventOccurrenceDocument>,
+    /// The first time at which several events took place at once and their order matters; left out if
+    /// there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub order_matters: Option<f64>,
+}
+
+/// An event.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "Event"))]
+pub struct EventDocument {
+    /// The expression that grows through zero there.
+    pub guard: String,
+    /// Whether the event takes place as well where the guard falls through zero.
+    pub both_ways: bool,
+    /// The states that are set, each with the formula of its new value.
+    pub set: Map<String>,
+}
+
+/// An event that took place.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "EventOccurrence"))]
+pub struct EventOccurrenceDocument {
+    /// The time.
+    pub t: f64,
+    /// The event, counted from 0.
+    pub event: usize,
+    /// Coordinates and velocities before it.
+    pub before: Map<f64>,
+    /// Coordinates and velocities behind it.
+    pub after: Map<f64>,
+    /// The energy that the event takes, negative where it gives some; null where no energy is accounted for.
+    pub energy_lost: Option<f64>,
+}
+
+impl EventsDocument {
+    fn new(motion: &Trajectory) -> Self {
+        let course = &motion.course;
+        let event = |event: &StateEvent| EventDocument {
+            guard: event.guard.to_string(),
+            both_ways: event.both_ways,
+            set: named(event.assignments.iter().map(|(state, value)| (state, value.to_string()))),
+        };
+        let occurrence = |event: &EventOccurrence| EventOccurrenceDocument {
+            t: event.time,
+            event: event.event,
+            before: states(course, &event.before),
+            after: states(course, &event.after),
+            energy_lost: event.loss,
+        };
+        Self {
+            events: course.events.iter().map(event).collect(),
+            occurrences: motion.events.occurrences.iter().map(occurrence).collect(),
+            order_matters: motion.events.order_matters,
+        }
+    }
+}
+
 impl WallDocument {
     pub(super) fn new(wall: &Wall) -> Self {
         Self { gap: wall.gap.to_string(), restitution: wall.restitution.to_string() }
@@ -270,6 +340,7 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
         }),
         held: motion.sticking_intervals().collect(),
         walls: (!course.walls.is_empty()).then(|| WallsDocument::new(motion)),
+        events: (!course.events.is_empty()).then(|| EventsDocument::new(motion)),
         stopped: in_words(motion.reason()).to_owned(),
         complete: report.is_complete(),
     }
@@ -281,7 +352,7 @@ fn section_document(
     (crossings, touches): (&[Crossing], &[f64]),
 ) -> SectionDocument {
     let [every, rising] = match section {
-        PoincareSection::Impacts => [None, None],
+        PoincareSection::Impacts | PoincareSection::Events => [None, None],
         PoincareSection::Every(period) => [Some(period.to_string()), None],
         PoincareSection::Rising(expression) => [None, Some(expression.to_string())],
     };
@@ -335,6 +406,9 @@ pub struct SweptMotionDocument {
     /// The number of impacts on walls; left out without a wall.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub impacts: Option<usize>,
+    /// The number of events; left out without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub events: Option<usize>,
     /// Why it ends where it does.
     pub stopped: String,
     /// Whether it was followed as long as asked.
@@ -357,6 +431,7 @@ pub fn motion_sweep(sweep: &MotionSweep) -> MotionSweepDocument {
             .as_ref()
             .map(|section| section_document(course, section, (&motion.crossings, &motion.touches))),
         impacts: (!course.walls.is_empty()).then_some(motion.impacts),
+        events: (!course.events.is_empty()).then_some(motion.events),
         stopped: in_words(motion.reason).to_owned(),
         complete: motion.reason == PathEnd::Reached,
     });

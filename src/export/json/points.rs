@@ -157,6 +157,9 @@ pub struct MotionPoint {
     /// The number of impacts on walls.
     #[serde(default)]
     pub impacts: usize,
+    /// The number of events.
+    #[serde(default)]
+    pub events: usize,
     /// The reason why it ended, in words.
     pub stopped: String,
 }
@@ -172,13 +175,14 @@ impl MotionPoint {
             crossings: motion.crossings.iter().map(crossing).collect(),
             touches: numbers(&motion.touches),
             impacts: motion.impacts,
+            events: motion.events,
             stopped: in_words(motion.reason).to_owned(),
         }
     }
 
     /// The motion at these values of what varies; `None` if a number is none.
     pub fn read(&self, values: Vec<f64>) -> Option<SweptMotion> {
-        const ENDS: [PathEnd; 8] = [
+        const ENDS: [PathEnd; 9] = [
             PathEnd::Reached,
             PathEnd::Event(0),
             PathEnd::StepLimit,
@@ -186,6 +190,7 @@ impl MotionPoint {
             PathEnd::Overflow,
             PathEnd::Sticks,
             PathEnd::PassesWall,
+            PathEnd::EventsAccumulate,
             PathEnd::Interrupted,
         ];
         let crossing = |(time, state): &(AnyNumber, Vec<AnyNumber>)| {
@@ -203,6 +208,7 @@ impl MotionPoint {
             crossings: self.crossings.iter().map(crossing).collect::<Option<_>>()?,
             touches: read_numbers(&self.touches)?,
             impacts: self.impacts,
+            events: self.events,
             reason: ENDS.into_iter().find(|end| in_words(*end) == self.stopped)?,
         })
     }

@@ -70,7 +70,7 @@ pub use function::Function;
 pub use parse::excerpt;
 pub use parse::{
     Equation, NAMES_OF_ANSWERS, ParseError, equation_in_grammar, expression_in_grammar,
-    parse_equation, parse_equations, parse_expression, parse_inequality,
+    parse_equation, parse_equations, parse_event, parse_expression, parse_inequality,
 };
 pub use print::Fraction;
 pub use print::Inside;

@@ -235,7 +235,7 @@ impl PoincareSection {
     /// This section with these expressions in place of some states.
     fn with_fixed_states(&self, fixed: &BTreeMap<Symbol, Expr>) -> Result<Self, ExprError> {
         Ok(match self {
-            Self::Every(_) | Self::Impacts => self.clone(),
+            Self::Every(_) | Self::Impacts | Self::Events => self.clone(),
             Self::Rising(expression) => Self::Rising(expression.substitute_all(fixed)?),
         })
     }

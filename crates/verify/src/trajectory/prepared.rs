@@ -1,6 +1,6 @@
 //! A problem whose equations are made ready once, to be followed from many starts.
 
-use super::wall_run::WallRun;
+use super::event_run::{EventRun, RunEnd};
 use super::walls::WallRecord;
 use super::{Ready, TrajectoryError, TrajectoryRequest};
 use crate::system::{Integrator, PathEnd};
@@ -60,10 +60,12 @@ impl PreparedTrajectory {
         start: &[f64],
     ) -> Result<TrajectoryEnd, TrajectoryError> {
         let course = TrajectoryRequest { duration: to, ..self.course.clone() };
-        let mut run = WallRun::new(&course, &self.ready, (from, start.to_vec()), self.integrator)?;
+        let mut run = EventRun::new(&course, &self.ready, (from, start.to_vec()), self.integrator)?;
         run.complete()?;
-        let (pieces, reason, walls) = run.finish();
+        let RunEnd { pieces, reason, walls, .. } = run.finish();
         let last = pieces.last().and_then(|piece| piece.states_at(piece.end()));
-        Ok(TrajectoryEnd { state: last.unwrap_or_else(|| start.to_vec()), walls, reason })
+        let mut state = last.unwrap_or_else(|| start.to_vec());
+        state.truncate(course.rates.states.len());
+        Ok(TrajectoryEnd { state, walls, reason })
     }
 }

@@ -9,6 +9,7 @@
 //! s(q, q', t) = 0,  ds/dt > 0                of any motion
 //! s = 0 at the largest or the least s        touched, not crossed
 //! just before each impact                    of any motion with walls
+//! just before each event                     of any motion with events
 //! ```
 //!
 //! A motion that turns back where s is zero touches the section and does not cross it, on whichever
@@ -33,6 +34,8 @@ pub enum PoincareSection {
     Rising(Expr),
     /// Just before each impact on a wall.
     Impacts,
+    /// Just before each event.
+    Events,
 }
 
 /// A state on a section.
@@ -45,11 +48,11 @@ pub struct Crossing {
 }
 
 impl PoincareSection {
-    /// Its period, or the expression that grows through zero; `None` at impacts.
+    /// Its period, or the expression that grows through zero; `None` at impacts and events.
     pub fn expression(&self) -> Option<&Expr> {
         match self {
             Self::Every(expression) | Self::Rising(expression) => Some(expression),
-            Self::Impacts => None,
+            Self::Impacts | Self::Events => None,
         }
     }
 
@@ -57,7 +60,7 @@ impl PoincareSection {
     /// at which it may touch zero. A rate that cannot be written is left out.
     pub(super) fn events(&self, rates: &Rates) -> Vec<Event> {
         match self {
-            Self::Every(_) | Self::Impacts => vec![],
+            Self::Every(_) | Self::Impacts | Self::Events => vec![],
             Self::Rising(expression) => {
                 let rate = rate_along(expression, Symbol::new("t"), &rates.states, &rates.right);
                 let rate = rate.filter(|rate| !rate.is_zero());
@@ -126,6 +129,12 @@ impl Trajectory {
             // A stretch ends with the state before its impact.
             Some(PoincareSection::Impacts) => {
                 let mut times: Vec<f64> = self.walls.impacts.iter().map(|hit| hit.time).collect();
+                times.dedup();
+                times
+            }
+            Some(PoincareSection::Events) => {
+                let events = self.events.occurrences.iter();
+                let mut times: Vec<f64> = events.map(|event| event.time).collect();
                 times.dedup();
                 times
             }
@@ -201,15 +210,22 @@ impl Trajectory {
         let count = self.course.coordinates.len();
         let of_coordinate = |index: usize| {
             let mut times = vec![from, end];
+            let mut behind = Vec::new();
             for piece in self.pieces.iter().filter(|piece| piece.end() >= from) {
                 times.extend(piece.turning_times(count + index, from.max(piece.from)));
-                // At an impact a coordinate may turn back with a velocity on both sides.
-                times.extend((!self.course.walls.is_empty()).then(|| piece.end()));
+                // At an impact or event a coordinate may turn back with a velocity on both sides, or jump.
+                if !(self.course.walls.is_empty() && self.course.events.is_empty()) {
+                    times.push(piece.end());
+                    let begins = from.max(piece.from);
+                    behind.extend(piece.states_at(begins).map(|states| states[index]));
+                }
             }
             let values = times.into_iter().filter_map(|time| self.state_at(time, index));
-            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], value| {
-                [least.min(value), greatest.max(value)]
-            })
+            values
+                .chain(behind)
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], value| {
+                    [least.min(value), greatest.max(value)]
+                })
         };
         (0..count).map(of_coordinate).collect()
     }

@@ -17,7 +17,6 @@
 //! Impacts and friction are passed by both motions, so that no derivative across them is needed. The
 //! standard error is that of the means of ten parts of the motion.
 
-use super::walls::Impact;
 use super::{ACCOUNTS, Trajectory};
 use crate::system::PathEnd;
 
@@ -74,13 +73,15 @@ impl Trajectory {
         let quarter = 0.25 * self.end();
         let from = if self.course.after > 0.0 { self.course.after } else { quarter };
         let step = (self.end() - from) / f64::from(INTERVALS);
-        // No instant is at an impact, where one of the two motions is before it and the other behind.
+        let impacts = self.walls.impacts.iter().map(|hit| hit.time);
+        let events = self.events.occurrences.iter().map(|event| event.time);
+        let jumps: Vec<f64> = impacts.chain(events).collect();
+        // No instant is at a jump, where one of the two motions is before it and the other behind.
         let times: Vec<f64> = (0..=INTERVALS)
             .map(|index| {
                 let time = from + step * f64::from(index);
-                let impacts = &self.walls.impacts;
-                let is_near = |hit: &Impact| (hit.time - time).abs() < 1e-3 * step;
-                if impacts.iter().any(is_near) { time + 2e-3 * step } else { time }
+                let is_near = |jump: f64| (jump - time).abs() < 1e-3 * step;
+                if jumps.iter().copied().any(is_near) { time + 2e-3 * step } else { time }
             })
             .collect();
         let last = times.len() - 1;

@@ -28,6 +28,8 @@ pub struct SweptMotion {
     pub touches: Vec<f64>,
     /// The number of impacts on walls from then on.
     pub impacts: usize,
+    /// The number of events from then on.
+    pub events: usize,
     /// The reason why it ended.
     pub reason: PathEnd,
 }
@@ -63,7 +65,10 @@ pub fn sweep(
         // on which a motion may turn back, which looks at all of its turns.
         let keep_from = match course.section {
             Some(PoincareSection::Rising(_)) => f64::NEG_INFINITY,
-            Some(PoincareSection::Every(_) | PoincareSection::Impacts) | None => course.after,
+            Some(
+                PoincareSection::Every(_) | PoincareSection::Impacts | PoincareSection::Events,
+            )
+            | None => course.after,
         };
         let mut course = TrajectoryRequest { energy: None, keep_from, ..course.clone() };
         for (name, value) in names.iter().zip(values) {
@@ -105,6 +110,10 @@ pub fn sweep(
                 crossings: motion.crossings().to_vec(),
                 touches: motion.touches().to_vec(),
                 impacts: motion.walls.impacts.iter().filter(|hit| hit.time >= course.after).count(),
+                events: {
+                    let events = motion.events.occurrences.iter();
+                    events.filter(|event| event.time >= course.after).count()
+                },
                 reason: motion.reason(),
             });
         }

@@ -16,7 +16,8 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 
 use super::resting::{WallEquations, equations};
-use super::{TrajectoryError, TrajectoryRequest, TrajectorySegment};
+use super::state_functions::StateFunctions;
+use super::{TrajectoryError, TrajectoryRequest, TrajectorySegment, work_of};
 use crate::expr::{CompiledList, Expr};
 use crate::symbol::Symbol;
 use crate::system::rate_along;
@@ -106,13 +107,9 @@ pub(super) struct CompiledWalls {
     restitution: Vec<f64>,
     /// For each wall: g, g', g'' and g''' in flight, n, and M^-1 n.
     functions: Vec<CompiledList>,
-    /// The energy; `None` if there is none.
-    energy: Option<CompiledList>,
+    evaluation: StateFunctions,
     /// The index among all states of the work of the walls; `None` if it is not accounted for.
     pub(super) work: Option<usize>,
-    /// The parameters, in the order of the arguments, and their values.
-    names: Vec<Symbol>,
-    numbers: Vec<f64>,
     /// The numbers of coordinates and of states.
     counts: [usize; 2],
 }
@@ -159,11 +156,7 @@ impl CompiledWalls {
         }
         let walls = equations(course)?;
         let states = &course.rates.states;
-        let moving: Vec<Symbol> = std::iter::once(Symbol::new("t")).chain(states.clone()).collect();
-        let constant = course.values.iter().filter(|(name, _)| !moving.contains(name));
-        let (names, numbers): (Vec<Symbol>, Vec<f64>) =
-            constant.map(|(name, value)| (*name, *value)).unzip();
-        let arguments = [moving, names.clone()].concat();
+        let evaluation = StateFunctions::new(course);
         let compiled = |wall: &WallEquations| {
             let jerk = rate_along(&wall.free, Symbol::new("t"), states, &course.rates.right);
             let mut all = vec![
@@ -173,48 +166,33 @@ impl CompiledWalls {
                 jerk.unwrap_or_else(Expr::zero),
             ];
             all.extend(wall.impact.normal.iter().chain(&wall.impact.direction).cloned());
-            CompiledList::new(&all, &arguments)
+            evaluation
+                .compiled(&all)
                 .map_err(|error| TrajectoryError::WallUndefined(wall.impact.gap.clone(), error))
         };
-        let energy = course.energy.as_ref().filter(|_| course.missing_for_energy().is_empty());
-        let work = energy
-            .and_then(|energy| energy.powers.iter().position(|(name, _)| name == WORK_OF_WALLS));
         Ok(Some(Self {
             functions: walls.iter().map(compiled).collect::<Result<_, _>>()?,
             walls,
             restitution: restitutions(course)?,
-            energy: energy.and_then(|energy| {
-                CompiledList::new(std::slice::from_ref(&energy.value), &arguments).ok()
-            }),
-            work: work.map(|index| states.len() + index),
-            names,
-            numbers,
+            work: work_of(course, WORK_OF_WALLS),
+            evaluation,
             counts: [course.coordinates.len(), states.len()],
         }))
     }
 
     /// Returns the walls with the numbers of a course that differs in its numbers alone.
     pub(super) fn with_numbers(&self, course: &TrajectoryRequest) -> Result<Self, TrajectoryError> {
-        let numbers = self.names.iter().map(|name| course.values.get(name).copied());
         Ok(Self {
-            numbers: numbers.map(|number| number.unwrap_or(f64::NAN)).collect(),
+            evaluation: self.evaluation.with_numbers(course),
             restitution: restitutions(course)?,
             ..self.clone()
         })
     }
 
-    /// The values of a list of functions at a state.
-    fn values(&self, list: &CompiledList, size: usize, time: f64, state: &[f64]) -> Vec<f64> {
-        let [_, states] = self.counts;
-        let arguments = [&[time], &state[..states], &self.numbers].concat();
-        let mut values = vec![0.0; size];
-        list.call(&arguments, &mut vec![], &mut values);
-        values
-    }
-
     fn at(&self, wall: usize, time: f64, state: &[f64]) -> AtWall {
         let [coordinates, _] = self.counts;
-        let values = self.values(&self.functions[wall], 4 + 2 * coordinates, time, state);
+        let list = &self.functions[wall];
+        let values = self.evaluation.values(list, 4 + 2 * coordinates, time, state);
         AtWall {
             gap: values[0],
             rate: values[1],
@@ -223,11 +201,6 @@ impl CompiledWalls {
             normal: values[4..4 + coordinates].to_vec(),
             direction: values[4 + coordinates..].to_vec(),
         }
-    }
-
-    fn energy(&self, time: f64, state: &[f64]) -> Option<f64> {
-        let value = self.values(self.energy.as_ref()?, 1, time, state)[0];
-        value.is_finite().then_some(value)
     }
 
     /// The size of a gap: that of the positions in it, whose rounding it has, or the largest so far.
@@ -251,17 +224,26 @@ impl CompiledWalls {
         })
     }
 
+    /// The gap of the first wall behind which a state is, beyond rounding, and its value; `None` if it is on
+    /// or in front of all walls.
+    pub(super) fn behind(&self, time: f64, state: &[f64]) -> Option<(Expr, f64)> {
+        self.walls.iter().enumerate().find_map(|(index, wall)| {
+            let at = self.at(index, time, state);
+            let is_behind = at.gap < -ON_WALL * self.size_of_gap(&at, state, 0.0);
+            is_behind.then(|| (wall.impact.gap.clone(), at.gap))
+        })
+    }
+
     /// The start of a motion on or in front of all walls, to rounding.
     ///
     /// # Errors
     /// The first wall behind which it begins.
     pub(super) fn check_start(&self, time: f64, state: &[f64]) -> Result<(), TrajectoryError> {
+        if let Some((gap, value)) = self.behind(time, state) {
+            return Err(TrajectoryError::BehindWall { gap, value });
+        }
         for (index, wall) in self.walls.iter().enumerate() {
             let at = self.at(index, time, state);
-            if at.gap < -ON_WALL * self.size_of_gap(&at, state, 0.0) {
-                let gap = wall.impact.gap.clone();
-                return Err(TrajectoryError::BehindWall { gap, value: at.gap });
-            }
             if at.compliance().is_nan() || at.compliance() <= 0.0 {
                 return Err(WallError::WithoutMass(wall.impact.gap.clone()).into());
             }
@@ -303,7 +285,7 @@ impl CompiledWalls {
                 (on && at.rate < -AT_REST * size).then_some((wall, at))
             });
             let Some((wall, at)) = closing else { break };
-            let before = self.energy(time, state);
+            let before = self.evaluation.energy(time, state);
             let compliance = at.compliance();
             let mut departure = -self.restitution[wall] * at.rate;
             let over = self.accumulation(wall, &at, departure, largest, resting, (time, state));
@@ -315,7 +297,8 @@ impl CompiledWalls {
             for (velocity, direction) in state[coordinates..states].iter_mut().zip(&at.direction) {
                 *velocity += change * direction;
             }
-            let loss = before.zip(self.energy(time, state)).map(|(before, after)| before - after);
+            let after = self.evaluation.energy(time, state);
+            let loss = before.zip(after).map(|(before, after)| before - after);
             if let (Some(work), Some(loss)) = (self.work, loss) {
                 state[work] -= loss;
             }

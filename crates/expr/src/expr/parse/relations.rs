@@ -1,11 +1,148 @@
-//! Several equations in one text, and inequalities.
+//! Several equations in one text, inequalities, and events.
 //!
 //! ```text
 //! equations  = sum [ "=" sum ] { ";" sum [ "=" sum ] }
 //! inequality = sum { ("<" | ">" | "<=" | ">=") sum }
+//! event      = [ "when" ] sum ("<" | ">" | "<=" | ">=" | "=") sum ":" name "=" sum { ";" name "=" sum }
 //! ```
 
 use super::{Expr, ParseError, Parser, TokenKind, parse_expression};
+use crate::symbol::Symbol;
+
+/// Reads an event of a motion with these states: a condition, a colon, and what is set where it comes
+/// true. The word `when` before the condition may be left out.
+///
+/// Returns the expression that grows through zero where the condition comes true, `x - 1` for `x > 1`;
+/// whether it counts as well where that falls through zero, as for `x = 1`; and the states that are set with
+/// their new values.
+///
+/// # Errors
+/// See [`ParseError`]; also for a condition without a state or the time, for a name that is not a state, and
+/// for an event that changes nothing.
+///
+/// ```
+/// # use lindstedt_expr as lindstedt;
+/// use lindstedt::expr::parse_event;
+///
+/// let kick = parse_event("x < 0: x' = -e*x'; y = y + 1", &["x".into(), "y".into(), "x'".into()])?;
+/// let (guard, both_ways, assignments) = kick;
+/// assert_eq!((guard.to_string(), both_ways), ("-x".to_owned(), false));
+/// assert_eq!(assignments[0].1.to_string(), "-e*x'");
+/// assert!(parse_event("x = 0: z = 1", &["x".into()]).is_err());
+/// # Ok::<(), lindstedt::expr::ParseError>(())
+/// ```
+pub fn parse_event(
+    text: &str,
+    states: &[Symbol],
+) -> Result<(Expr, bool, Vec<(Symbol, Expr)>), ParseError> {
+    let first = text.len() - text.trim_start().len();
+    let spoken = text[first..].strip_prefix("when").filter(|rest| rest.starts_with(' '));
+    let first = spoken.map_or(first, |rest| text.len() - rest.len());
+    let Some(colon) = text.find(':') else {
+        let help = "an event is a condition, a colon and what is set, such as `x > 1: x' = -x'`";
+        return Err(ParseError::new(text, 0..text.len(), "no `:` behind the condition", help));
+    };
+    let condition = &text[first..colon.max(first)];
+    let own = |error: ParseError| error.within(text, first);
+    let (guard, both_ways) = condition_of_event(condition).map_err(own)?;
+    let names = guard.symbols();
+    if let Some(other) = names.iter().find(|name| name.primes() > 0 && !states.contains(name)) {
+        let message = format!("`{other}` is not a state");
+        return Err(ParseError::new(text, first..colon, &message, &listed(states)));
+    }
+    if !names.iter().any(|name| states.contains(name) || name.name() == "t") {
+        let message = "this condition never changes";
+        let help = format!("it needs the time `t` or a state, {}", listed(states));
+        return Err(ParseError::new(text, first..colon, message, &help));
+    }
+    Ok((guard, both_ways, assignments(text, colon + 1, states)?))
+}
+
+/// The states, for a message.
+fn listed(states: &[Symbol]) -> String {
+    let names: Vec<String> = states.iter().map(|name| format!("`{name}`")).collect();
+    format!("one of {}", names.join(", "))
+}
+
+/// The expression that grows through zero where a condition comes true, and whether it may fall as well.
+fn condition_of_event(text: &str) -> Result<(Expr, bool), ParseError> {
+    let relation = |letter: char| matches!(letter, '<' | '>' | '≤' | '≥' | '=');
+    let Some(sign) = text.find(relation) else {
+        let help = "a condition compares two expressions, such as `x > 1` or `x = 0`";
+        return Err(ParseError::new(text, 0..text.len(), "no `<`, `>` or `=`", help));
+    };
+    if !text[sign..].starts_with('=') {
+        let gaps = parse_inequality(text)?;
+        return match <[Expr; 1]>::try_from(gaps) {
+            Ok([gap]) => Ok((gap, false)),
+            Err(_) => {
+                let help = "give an event for each of them";
+                Err(ParseError::new(text, 0..text.len(), "several conditions in one", help))
+            }
+        };
+    }
+    let sides = [0..sign, sign + 1..text.len()].map(|range| {
+        if text[range.clone()].trim().is_empty() {
+            let help = "a condition has an expression on each side, such as `x = 0`";
+            let place = sign..sign + 1;
+            return Err(ParseError::new(text, place, "a side of the condition is empty", help));
+        }
+        let first = range.start;
+        parse_expression(&text[range]).map_err(|error| error.within(text, first))
+    });
+    let [left, right] = sides;
+    Ok((left? - right?, true))
+}
+
+/// The assignments in a text from this byte on.
+fn assignments(
+    text: &str,
+    from: usize,
+    states: &[Symbol],
+) -> Result<Vec<(Symbol, Expr)>, ParseError> {
+    let mut assignments: Vec<(Symbol, Expr)> = Vec::new();
+    let mut first = from;
+    for part in text[from..].split(';') {
+        let start = first + part.len() - part.trim_start().len();
+        let place = start..(first + part.trim_end().len()).max(start);
+        first += part.len() + 1;
+        if place.is_empty() {
+            continue;
+        }
+        let part = &text[place.clone()];
+        let error =
+            |message: &str, help: &str| Err(ParseError::new(text, place.clone(), message, help));
+        let Some((name, value)) = part.split_once('=') else {
+            return error("nothing is set here", "an event sets a state, such as `x' = -x'`");
+        };
+        let name = name.trim_end();
+        let Some(state) = states.iter().find(|state| state.name() == name) else {
+            let place = start..start + name.len().max(1);
+            let message = format!("`{name}` is not a state, so that an event cannot set it");
+            return Err(ParseError::new(text, place, &message, &listed(states)));
+        };
+        if value.contains(',') && parse_expression(value).is_err() {
+            return error("this is not one value", "several states are set with `;` between them");
+        }
+        let offset = place.end - value.len();
+        let value = parse_expression(value).map_err(|error| error.within(text, offset))?;
+        if let Some(other) =
+            value.symbols().iter().find(|name| name.primes() > 0 && !states.contains(name))
+        {
+            return error(&format!("`{other}` is not a state"), &listed(states));
+        }
+        if assignments.iter().any(|(known, _)| known == state) {
+            return error(&format!("`{state}` is set twice"), "");
+        }
+        assignments.push((*state, value));
+    }
+    if assignments.iter().all(|(state, value)| value.as_symbol() == Some(*state)) {
+        let message = "this event changes nothing";
+        let help = "behind the colon stands what is set, such as `x' = -x'`";
+        return Err(ParseError::new(text, from - 1..text.len(), message, help));
+    }
+    Ok(assignments)
+}
 
 /// Reads equations that are separated by `;`, such as `x'' + x - y = 0; y'' + y - x = 0`, each as
 /// its left and its right side, which is 0 if there is no equals sign.

@@ -84,7 +84,8 @@ pub fn simulate_primary(
             | PathEnd::Singular
             | PathEnd::Overflow
             | PathEnd::Sticks
-            | PathEnd::PassesWall => {
+            | PathEnd::PassesWall
+            | PathEnd::EventsAccumulate => {
                 break PrimaryStop::Singular;
             }
         }

@@ -1,22 +1,25 @@
-//! A motion from impact to impact, with rest on walls in between.
+//! A motion from event to event: impacts on walls, with rest on them in between, and resets.
 //!
 //! ```text
 //! flight:    q'' = f(q, q', t) until a gap falls through zero, then the impact
+//!            or the guard of an event passes through zero, then its reset
 //! rest:      the equations of [`resting`](super::resting) until the force of a wall falls through zero
 //! ```
 //!
-//! Flights of several motions can be integrated side by side: [`WallRun::next_flight`] says what is to
-//! be integrated, [`WallRun::advance`] takes its path. A motion without walls is one flight.
+//! Flights of several motions can be integrated side by side: [`EventRun::next_flight`] says what is to
+//! be integrated, [`EventRun::advance`] takes its path. A motion without walls and events is one flight. Walls
+//! come first where both are met at one time.
 
 use std::collections::BTreeMap;
 
+use super::events::{BeforeEvents, CompiledEvents, EventRecord, GuardState};
 use super::hold::IDLE;
 use super::walls::{WallEvent, WallRecord};
 use super::{Ready, TrajectoryError, TrajectoryRequest, TrajectorySegment};
 use crate::system::{Integrator, Path, PathEnd, Solver};
 
-/// A motion that is followed from impact to impact.
-pub(super) struct WallRun<'a> {
+/// A motion that is followed from event to event.
+pub(super) struct EventRun<'a> {
     course: &'a TrajectoryRequest,
     /// The equations of flight, with the walls.
     flight: &'a Ready,
@@ -35,9 +38,19 @@ pub(super) struct WallRun<'a> {
     reason: Option<PathEnd>,
     pieces: Vec<TrajectorySegment>,
     record: WallRecord,
+    guards: Vec<GuardState>,
+    events: EventRecord,
 }
 
-impl<'a> WallRun<'a> {
+/// The pieces of a motion that has ended, the reason, and the impacts and events on its way.
+pub(super) struct RunEnd {
+    pub(super) pieces: Vec<TrajectorySegment>,
+    pub(super) reason: PathEnd,
+    pub(super) walls: WallRecord,
+    pub(super) events: EventRecord,
+}
+
+impl<'a> EventRun<'a> {
     /// Begins a motion at a time, with the state there.
     ///
     /// # Errors
@@ -48,6 +61,7 @@ impl<'a> WallRun<'a> {
         (from, mut state): (f64, Vec<f64>),
         integrator: Integrator,
     ) -> Result<Self, TrajectoryError> {
+        state.resize(flight.states.len(), 0.0);
         let mut record = WallRecord::default();
         let (mut resting, mut largest) = (vec![], vec![]);
         if let Some(walls) = &flight.walls {
@@ -59,7 +73,7 @@ impl<'a> WallRun<'a> {
                 state[work] = 0.0;
             }
         }
-        Ok(Self {
+        let mut run = Self {
             course,
             flight,
             integrator,
@@ -73,7 +87,49 @@ impl<'a> WallRun<'a> {
             reason: None,
             pieces: vec![],
             record,
-        })
+            guards: flight.events.as_ref().map_or(vec![], CompiledEvents::guards),
+            events: EventRecord::default(),
+        };
+        if let Some(events) = &flight.events {
+            events.check_start(from, &run.state)?;
+            events.note_largest(from, &run.state, &mut run.guards);
+            let before = events.before(from, &run.state, None, &mut run.guards);
+            run.take_events(events, before)?;
+            // The account begins behind an event at the start.
+            if let Some(work) = events.work {
+                run.state[work] = 0.0;
+            }
+        }
+        Ok(run)
+    }
+
+    /// Carries out the events at this instant and the impacts that they cause, and sets what is watched from
+    /// here on.
+    ///
+    /// # Errors
+    /// A reset without a value, or to a place behind a wall.
+    fn take_events(
+        &mut self,
+        events: &CompiledEvents,
+        before: BeforeEvents,
+    ) -> Result<(), TrajectoryError> {
+        let (from, largest, record) = (self.from, &self.largest, &mut self.record);
+        let resting = &mut self.resting;
+        let impacts = |state: &mut [f64]| {
+            let Some(walls) = &self.flight.walls else { return Ok(()) };
+            if let Some((gap, value)) = walls.behind(from, state) {
+                return Err(TrajectoryError::EventBehindWall { gap, value, time: from });
+            }
+            *resting = walls.settle(from, state, WallEvent::Start, resting, largest, record);
+            Ok(())
+        };
+        let state = &mut self.state;
+        let ends = events.settle(from, state, before, &self.guards, &mut self.events, impacts)?;
+        events.watch(from, state, &mut self.guards);
+        if !ends {
+            self.reason = Some(PathEnd::EventsAccumulate);
+        }
+        Ok(())
     }
 
     /// Whether it has ended.
@@ -134,32 +190,66 @@ impl<'a> WallRun<'a> {
                 .into_iter()
                 .any(|(time, state)| walls.passed(time, &state, &self.largest).is_some())
         });
+        let missed = match (&flight.events, &last) {
+            (Some(events), Some(last)) => {
+                self.note_largest_guards(events, &stretch);
+                !matches!(reason, PathEnd::Event(_)) && events.missed(end, last, &self.guards)
+            }
+            _ => false,
+        };
         self.pieces.extend(stretch);
-        if passed {
-            self.reason = Some(PathEnd::PassesWall);
+        if passed || missed {
+            let passed_wall = if passed { PathEnd::PassesWall } else { PathEnd::EventsAccumulate };
+            self.reason = Some(passed_wall);
             return Ok(());
         }
-        let (Some(walls), Some(last), PathEnd::Event(event)) = (&flight.walls, last, reason) else {
+        let (Some(last), PathEnd::Event(event)) = (last, reason) else {
             self.reason = Some(reason);
             return Ok(());
         };
+        let guard = event - recorded;
+        let reached = guard.checked_sub(self.course.walls.len());
         self.idle = if end > self.from { 0 } else { self.idle + 1 };
         if self.idle > IDLE || self.steps >= self.course.step_limit {
-            let stuck = self.idle > IDLE;
-            self.reason = Some(if stuck { PathEnd::Sticks } else { PathEnd::StepLimit });
+            self.reason = Some(match (self.idle > IDLE, reached) {
+                (false, _) => PathEnd::StepLimit,
+                (true, None) => PathEnd::Sticks,
+                (true, Some(_)) => PathEnd::EventsAccumulate,
+            });
             return Ok(());
         }
         (self.from, self.state) = (end, last);
-        let guard = event - recorded;
-        let event = match self.resting.contains(&guard) {
-            true => WallEvent::Released(guard),
-            false => WallEvent::Hit(guard),
-        };
-        let largest = &self.largest;
-        let record = &mut self.record;
-        self.resting =
-            walls.settle(self.from, &mut self.state, event, &self.resting, largest, record);
-        Ok(())
+        let guards = &mut self.guards;
+        let before =
+            flight.events.as_ref().map(|events| events.before(end, &self.state, reached, guards));
+        if let (Some(walls), None) = (&flight.walls, reached) {
+            let event = match self.resting.contains(&guard) {
+                true => WallEvent::Released(guard),
+                false => WallEvent::Hit(guard),
+            };
+            let (largest, record) = (&self.largest, &mut self.record);
+            self.resting =
+                walls.settle(end, &mut self.state, event, &self.resting, largest, record);
+        }
+        match (&flight.events, before) {
+            (Some(events), Some(before)) => self.take_events(events, before),
+            _ => Ok(()),
+        }
+    }
+
+    /// Raises the largest sizes of the guards to those on these stretches, which are looked at in some
+    /// places.
+    fn note_largest_guards(&mut self, events: &CompiledEvents, stretch: &[TrajectorySegment]) {
+        const PLACES: u32 = 4;
+        for piece in stretch {
+            for place in 1..=PLACES {
+                let share = f64::from(place) / f64::from(PLACES);
+                let time = piece.from + share * (piece.end() - piece.from);
+                if let Some(state) = piece.states_at(time) {
+                    events.note_largest(time, &state, &mut self.guards);
+                }
+            }
+        }
     }
 
     /// Goes on to the end.
@@ -173,13 +263,14 @@ impl<'a> WallRun<'a> {
         Ok(())
     }
 
-    /// The pieces, the reason why it ended, and the impacts.
-    pub(super) fn finish(self) -> (Vec<TrajectorySegment>, PathEnd, WallRecord) {
+    /// The pieces, the reason why it ended, and the impacts and events.
+    pub(super) fn finish(self) -> RunEnd {
         let Self { pieces, mut record, .. } = self;
         let end = pieces.last().map_or(0.0, TrajectorySegment::end);
         for rest in record.rests.iter_mut().filter(|rest| rest.until.is_infinite()) {
             rest.until = end.max(rest.from);
         }
-        (pieces, self.reason.unwrap_or(PathEnd::Interrupted), record)
+        let reason = self.reason.unwrap_or(PathEnd::Interrupted);
+        RunEnd { pieces, reason, walls: record, events: self.events }
     }
 }

@@ -1,0 +1,110 @@
+//! Events on the command line: `simulate` with `--event`, the examples, and what is refused.
+
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn run(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+        .args(arguments)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("the program starts")
+}
+
+fn printed(arguments: &[&str]) -> String {
+    let output = run(arguments);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{arguments:?}: {message}");
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// The command in the comment of each example.
+const EXAMPLES: [&[&str]; 2] = [
+    &["simulate", "examples/events/clock.toml", "--from", "x=-1", "--until", "100"],
+    &["simulate", "examples/events/integrate-and-fire.toml", "--from", "v=0", "--until", "30"],
+];
+
+#[test]
+fn examples_print_their_events() {
+    for arguments in EXAMPLES {
+        let name = arguments[1].rsplit(['/', '.']).nth(1).expect("a name");
+        let mut settings = insta::Settings::clone_current();
+        settings.set_snapshot_path(concat!(env!("CARGO_MANIFEST_DIR"), "/snapshots"));
+        settings.set_prepend_module_to_snapshot(false);
+        settings.set_omit_expression(true);
+        settings.bind(|| insta::assert_snapshot!(format!("events-{name}"), printed(arguments)));
+        let text =
+            std::fs::read_to_string(format!("{}/{}", env!("CARGO_MANIFEST_DIR"), arguments[1]));
+        assert!(text.expect("a file").contains(&arguments.join(" ")), "{arguments:?}");
+    }
+}
+
+/// A document has the events, each with the states on both sides and its energy.
+#[test]
+fn a_document_has_its_events() {
+    let event = "x < 0: x' = -x'/2; y = y + 1";
+    let from = ["--from", "x=1", "--until", "2", "--format", "json"];
+    let text =
+        printed(&[&["simulate", "x'' + 2 = 0; y'' = 0", "--event", event], &from[..]].concat());
+    let document: Value = serde_json::from_str(&text).expect("JSON");
+    let events = &document["events"];
+    assert_eq!(events["events"][0]["guard"], "-x");
+    assert_eq!(events["events"][0]["set"]["x'"], "-x'/2");
+    let first = &events["occurrences"][0];
+    assert_eq!((first["t"].as_f64(), first["before"]["x'"].as_f64()), (Some(1.0), Some(-2.0)));
+    assert_eq!(
+        (first["after"]["x'"].as_f64(), first["after"]["y"].as_f64()),
+        (Some(1.0), Some(1.0))
+    );
+    assert!(first["energy_lost"].is_null());
+    let ball = ["simulate", "x'' + 2 = 0", "--event", "x < 0: x' = -x'/2"];
+    let document: Value =
+        serde_json::from_str(&printed(&[&ball, &from[..]].concat())).expect("JSON");
+    assert_eq!(document["events"]["occurrences"][0]["energy_lost"].as_f64(), Some(1.5));
+    assert_eq!(document["energy"]["works"]["events"].as_f64(), Some(-1.5));
+    assert_eq!(document["complete"], true);
+}
+
+/// A bifurcation diagram of a kicked oscillator: a row for each state just before a kick.
+#[test]
+fn a_sweep_takes_events() {
+    let sweep = ["--sweep", "p=0.1:0.3:3", "--from", "x=0", "--until", "100", "--after", "50"];
+    let kicked = ["simulate", "x'' + x'/5 + x = 0", "--event", "sin(t) > 0: x' = x' + p"];
+    let text = printed(&[&kicked[..], &sweep].concat());
+    assert!(text.contains("events"), "{text}");
+    let text =
+        printed(&[&kicked[..], &sweep, &["--section", "events", "--format", "csv"]].concat());
+    assert_eq!(text.lines().count(), 1 + 3 * 8, "{text}");
+}
+
+#[test]
+fn bad_events_are_refused_with_a_way_forward() {
+    let refusal = |extra: &[&str]| {
+        let output = run(&[&["simulate", "x'' + x = 0", "--from", "x=0.5"], extra].concat());
+        assert!(!output.status.success(), "{extra:?}");
+        String::from_utf8(output.stderr).expect("text")
+    };
+    for (extra, words) in [
+        (&["--event", "x > 1"][..], "no `:` behind the condition"),
+        (&["--event", "x > 1: y = 2"], "^ one of `x`, `x'`"),
+        (&["--event", "x > 1:"], "this event changes nothing"),
+        (&["--event", "d > 1: x = 2"], "this condition never changes"),
+        (&["--event", "x > 1: x = d"], "no value for `d`"),
+        (&["--section", "events"], "there are no events: give --event"),
+        (&["--event", "x < 1: x' = -x'", "--wall", "x < 0", "--restitution", "1"], "behind a wall"),
+    ] {
+        let refusal = refusal(extra);
+        assert!(refusal.contains(words), "{extra:?}: {refusal}");
+    }
+}
+
+/// Events of a motion that come ever faster end it with the reason, and what there is is kept.
+#[test]
+fn accumulating_events_are_a_partial_result() {
+    let ball = ["--event", "x < 0: x' = -0.8*x'", "--from", "x=1", "--until", "30"];
+    let output = run(&[&["simulate", "x'' + 2 = 0"], &ball[..]].concat());
+    assert_eq!(output.status.code(), Some(4));
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(message.contains("events follow each other ever faster"), "{message}");
+}

@@ -9,6 +9,7 @@
 use num_traits::{One as _, Signed as _, ToPrimitive as _};
 
 use super::coordinate;
+use super::elementary::Analytic;
 use super::fourier_series::{FourierSeries, WORKING};
 use crate::exact::Rational;
 use crate::exact::bound::Bound;
@@ -34,24 +35,17 @@ pub(super) fn along(force: &Expr, motion: &FourierSeries) -> Result<FourierSerie
 ///
 /// # Errors
 /// [`NoValue`].
-pub(super) fn along_all(
-    force: &Expr,
-    letters: &[(Symbol, &FourierSeries)],
-) -> Result<FourierSeries, NoValue> {
-    force.fold(|node, parts: &[FourierSeries]| {
+pub(super) fn along_all<S: Analytic>(force: &Expr, letters: &[(Symbol, &S)]) -> Result<S, NoValue> {
+    force.fold(|node, parts: &[S]| {
         let value = value(node, letters, parts);
         value.filter(|value| value.norm() < Bound::UNKNOWN).ok_or_else(|| NoValue(node.to_string()))
     })
 }
 
-fn value(
-    node: &Expr,
-    letters: &[(Symbol, &FourierSeries)],
-    parts: &[FourierSeries],
-) -> Option<FourierSeries> {
+fn value<S: Analytic>(node: &Expr, letters: &[(Symbol, &S)], parts: &[S]) -> Option<S> {
     match node.node() {
-        Node::Number(value) => Some(FourierSeries::constant(WORKING.fraction(value))),
-        Node::Pi => Some(FourierSeries::constant(WORKING.pi())),
+        Node::Number(value) => Some(S::constant(WORKING.fraction(value))),
+        Node::Pi => Some(S::constant(WORKING.pi())),
         Node::Symbol(symbol) => {
             letters.iter().find(|(letter, _)| letter == symbol).map(|(_, series)| (*series).clone())
         }
@@ -65,17 +59,17 @@ fn value(
     }
 }
 
-fn times(series: FourierSeries, coefficient: &Rational) -> FourierSeries {
+fn times<S: Analytic>(series: S, coefficient: &Rational) -> S {
     match coefficient.is_one() {
         true => series,
-        false => series.product(&FourierSeries::constant(WORKING.fraction(coefficient))),
+        false => series.product(&S::constant(WORKING.fraction(coefficient))),
     }
 }
 
 /// The highest whole power that is computed by products.
 const HIGHEST_POWER: u32 = 200;
 
-fn power(base: &FourierSeries, exponent: &Rational) -> Option<FourierSeries> {
+fn power<S: Analytic>(base: &S, exponent: &Rational) -> Option<S> {
     let times = exponent.numer().abs().to_u32().filter(|times| *times <= HIGHEST_POWER)?;
     let degree = exponent.denom().to_u32().filter(|degree| *degree <= HIGHEST_POWER)?;
     match (degree, exponent.is_negative()) {
@@ -90,7 +84,7 @@ fn power(base: &FourierSeries, exponent: &Rational) -> Option<FourierSeries> {
 }
 
 /// A function of a series; `None` if it is not proved to have a value, or has no enclosure here.
-pub(super) fn function_of(function: Function, argument: &FourierSeries) -> Option<FourierSeries> {
+pub(super) fn function_of<S: Analytic>(function: Function, argument: &S) -> Option<S> {
     let hyperbolic = || {
         let growing = argument.exponential()?;
         let falling = argument.scaled(-1).exponential()?;

@@ -16,6 +16,7 @@ use std::f64::consts::PI;
 
 use num_traits::{Signed as _, Zero as _};
 
+use super::elementary::Analytic as _;
 use super::fourier_series::{FourierSeries, WORKING, sum_of_angles};
 use super::law;
 use super::radii_polynomial::{NotProved, Proof};

@@ -24,6 +24,7 @@
 mod approximate_inverse;
 mod candidate;
 mod damped;
+mod elementary;
 mod force;
 mod formula;
 mod fourier_series;
@@ -32,6 +33,7 @@ mod law;
 mod law_on_range;
 mod modes;
 mod radii_polynomial;
+mod sheet;
 mod theorem;
 mod validity;
 

@@ -34,7 +34,7 @@
 //! Rigorous numerics in dynamics, Notices of the AMS 62 (2015), 1057-1061. The cost is that of n^3
 //! products of short integers, n the number of harmonics in the block times that of coordinates.
 
-mod on_disc;
+mod on_piece;
 
 use num_traits::Signed as _;
 
@@ -48,7 +48,7 @@ use crate::exact::ball::Ball;
 use crate::exact::bound::Bound;
 use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;
-pub(super) use on_disc::{ApproximateMotion, MotionsOnDisc, NearMotion};
+pub(super) use on_piece::{ApproximateMotion, ApproximateMotions, MotionsOnPiece, NearMotion};
 
 /// Columns beyond which those of all further harmonics are bounded together.
 const MOST_COLUMNS: usize = 20 * HIGHEST_HARMONIC;

@@ -57,6 +57,7 @@ use std::f64::consts::TAU;
 use num_traits::Signed as _;
 
 use super::super::CheckError;
+use super::super::elementary::Analytic as _;
 use super::super::formula::{Enclosure, SizeBounds, hold_both, waves};
 use super::super::fourier_series::{FourierSeries, WORKING};
 use super::problem::{DampedProblem, SeriesMatrix};

@@ -20,6 +20,7 @@
 use num_traits::{Signed as _, ToPrimitive as _};
 
 use super::super::coordinate;
+use super::super::elementary::Analytic as _;
 use super::super::force::function_of;
 use super::super::fourier_series::{FourierSeries, WORKING};
 use super::inverse_frequency::Extent;

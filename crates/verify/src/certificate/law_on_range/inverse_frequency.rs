@@ -10,9 +10,10 @@
 
 use std::collections::BTreeMap;
 
-use num_traits::{One as _, Zero as _};
+use num_traits::Zero as _;
 
 use super::super::coordinate;
+use super::super::elementary::Analytic as _;
 use super::super::force::{along, along_all, is_odd};
 use super::super::fourier_series::{FourierSeries, WORKING};
 use super::contact::{self, ContactMean};
@@ -87,11 +88,9 @@ pub(super) struct PiecePolynomial {
 }
 
 impl PiecePolynomial {
-    /// The polynomial through the middles of values at nodes.
-    pub(super) fn through(nodes: &[Rational], values: Vec<Ball>, remainder: Bound) -> Self {
-        let exactly = |ball: Ball| Ball { radius: Bound::ZERO, ..ball };
-        let values = values.into_iter().map(exactly).collect();
-        Self { coefficients: interpolated(nodes, values), remainder }
+    /// The polynomial with these coefficients, the constant first.
+    pub(super) const fn new(coefficients: Vec<Ball>, remainder: Bound) -> Self {
+        Self { coefficients, remainder }
     }
 
     /// All numbers of the ball that a value may be.
@@ -116,7 +115,7 @@ impl PiecePolynomial {
 /// Number of places at which `1/omega` is computed on a piece, and the ratio of the radius of the disc
 /// on which it is bounded to half of its width.
 const NODES: usize = 16;
-pub(super) const WIDER: u32 = 4;
+const WIDER: u32 = 4;
 
 /// The least part of the range that a piece may be, as a power of two.
 const THINNEST: u32 = 14;
@@ -585,7 +584,7 @@ fn root_of_mass(mass: &FourierSeries) -> Result<FourierSeries, LawNotProved> {
 }
 
 /// Fractions near the points of Chebyshev between -1 and 1.
-pub(super) fn nodes() -> Vec<Rational> {
+fn nodes() -> Vec<Rational> {
     let node = |i: usize| {
         let angle = std::f64::consts::PI * (i as f64 + 0.5) / NODES as f64;
         Rational::new(((angle.cos() * 65536.0).round() as i64).into(), 65536.into())
@@ -595,7 +594,7 @@ pub(super) fn nodes() -> Vec<Rational> {
 
 /// A bound of `prod |e - e_j|` for e between -1 and 1: the largest value at points `1/N` apart, where
 /// the distances from the next one add at most that to each factor.
-pub(super) fn largest_product(nodes: &[Rational]) -> Bound {
+fn largest_product(nodes: &[Rational]) -> Bound {
     const POINTS: i64 = 4096;
     let product = |point: i64| -> Bound {
         let place = Rational::new(point.into(), POINTS.into());
@@ -608,34 +607,10 @@ pub(super) fn largest_product(nodes: &[Rational]) -> Bound {
 
 /// A bound of the distance of a function from the polynomial through its values at the nodes, from one of its
 /// size on the disc and of the product of the distances from the nodes in units of h.
-pub(super) fn interpolation_error(largest: Bound, largest_product: Bound) -> Bound {
+fn interpolation_error(largest: Bound, largest_product: Bound) -> Bound {
     let outside = f64::from(WIDER - 1);
     let apart = (0..NODES).fold(largest_product, |bound, _| bound.over(outside));
     Bound::exactly(f64::from(WIDER)).over(outside) * apart * largest
-}
-
-/// A bound of the sum of the sizes of Lagrange's polynomials between -1 and 1, as that of the product is
-/// found.
-pub(super) fn lebesgue_constant(nodes: &[Rational]) -> Bound {
-    const POINTS: i64 = 2048;
-    let apart = |place: &Rational, node: &Rational| Bound::of_fraction(&(place - node));
-    let own = |node: &Rational| -> Bound {
-        let others = nodes.iter().filter(|other| *other != node);
-        let product = others.fold(Rational::one(), |product, other| product * (node - other));
-        Bound::exactly(1.0).over(WORKING.distance_from_zero(&WORKING.fraction(&product)))
-    };
-    let weights: Vec<Bound> = nodes.iter().map(own).collect();
-    let step = Bound::of_fraction(&Rational::new(1.into(), (2 * POINTS).into()));
-    let sum = |point: i64| -> Bound {
-        let place = Rational::new(point.into(), POINTS.into());
-        let factors: Vec<Bound> = nodes.iter().map(|node| apart(&place, node) + step).collect();
-        let polynomial = |own: usize| {
-            let others = factors.iter().enumerate().filter(|(other, _)| *other != own);
-            others.fold(weights[own], |product, (_, factor)| product * *factor)
-        };
-        (0..nodes.len()).map(polynomial).sum()
-    };
-    (-POINTS..=POINTS).map(sum).fold(Bound::ZERO, Bound::max)
 }
 
 /// The coefficients of the polynomial with these values at the nodes, by Newton's divided differences.

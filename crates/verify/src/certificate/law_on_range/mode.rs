@@ -3,18 +3,18 @@
 //!
 //! ```text
 //! q'' + f(q) = 0,  q = a v(omega t):     v'' + mu g(v; a) = 0,   g = f(a v)/a,   mu = 1/omega^2,   condition(v) = 1
-//! piece |a - c| <= h:     one motion for each complex |a - c| <= 4 h, in a ball about that in the middle
-//! |1/omega - p| <= E sup|1/omega - 1/omega_c| + L max_j delta_j       p through values within delta_j at sixteen nodes
+//! piece a = c + h e, |e| <= 1:     one motion for each a, within s of an approximation that is a polynomial in e
+//! |1/omega - w| <= (||mu~ - w^2|| + s/sigma)/min w               mu~ the approximation, w a polynomial in e
 //! ```
 //!
 //! The motion over its amplitude has a limit at rest, where that of a polynomial f is analytic in a, so that
-//! ranges begin at zero. On the disc `1/omega` is an analytic function (`theorem/on_disc`), for which Hermite's
-//! integral gives E; L bounds the sum of the sizes of Lagrange's polynomials. At the end that two pieces share,
-//! the motion of the one is in the ball of the other, so that all are one continuous branch. It is told from
-//! others by an approximate motion at the lower end, near which it has to be.
+//! ranges begin at zero. Approximate motions are Chebyshev's series through those at some amplitudes
+//! (`theorem/on_piece`). At the end that two pieces share, the motion of the one is in the ball of the other, so
+//! that all are one continuous branch. It is told from others by an approximate motion at the lower end, near
+//! which it has to be, and near which there is no other.
 //!
 //! In: equations, the definition of the amplitude, an approximate motion and a range. Out: the pieces. One
-//! costs a proof, and seventeen defects.
+//! costs a proof, and twenty approximate motions.
 //!
 //! Sources: those of `theorem` and of `law_on_range`.
 
@@ -24,6 +24,7 @@ use num_traits::{Signed as _, ToPrimitive as _, Zero as _};
 
 use super::super::HIGHEST_HARMONIC;
 use super::super::candidate::{INVERSE_BITS, inverse, odd_below, units};
+use super::super::elementary::Analytic as _;
 use super::super::force::is_odd;
 use super::super::fourier_series::{FourierSeries, WORKING};
 use super::super::law;
@@ -31,14 +32,13 @@ use super::super::modes::{
     MOST_COORDINATES, ModeAmplitude, last_harmonic_of_largest_block, mode_branch,
 };
 use super::super::radii_polynomial::NotProved;
+use super::super::sheet::Sheet;
 use super::super::theorem::{
-    ApproximateMotion, Condition, ConservativeProblem, MotionsOnDisc, NearMotion,
+    ApproximateMotion, ApproximateMotions, Condition, ConservativeProblem, MotionsOnPiece,
+    NearMotion,
 };
 use super::LawNotProved;
-use super::inverse_frequency::{
-    PiecePolynomial, Scale, TruthPiece, WIDER, interpolation_error, largest_product,
-    lebesgue_constant, nodes,
-};
+use super::inverse_frequency::{PiecePolynomial, Scale, TruthPiece};
 use super::jet::widened;
 use crate::decimal::decimal;
 use crate::exact::ball::Ball;
@@ -72,10 +72,16 @@ pub struct ModeBranch {
 const SAME_MOTION: i32 = -20;
 
 /// Binary digits of approximate motions.
-const BITS: usize = 64;
+const BITS: usize = 60;
 
-/// Binary digits of the series, whose errors need only be small beside the error of a law.
-const DIGITS: usize = 56;
+/// Amplitudes of a piece at which approximate motions are found.
+const NODES: usize = 20;
+
+/// Harmonics smaller than this power of two, its sign changed, need not be known where a contraction is bounded.
+const SHORT: i32 = 30;
+
+/// The largest distance of the polynomial of a piece from `1/omega`, as a power of two.
+const ACCURATE: i32 = -37;
 
 /// The least part of the range that a piece may be, as a power of two.
 const THINNEST: u32 = 14;
@@ -153,15 +159,14 @@ impl ModeBranch {
             let next = (position + width).min(steps);
             let near = end.as_ref().map_or(&begin, |end| &end.approximate);
             let ends = [&place(position), &place(next)];
-            let found = equations.piece(ends, near, &|disc| match &end {
-                Some(end) => Ok(disc.holds(&end.motion, &end.found)),
-                None => equations.begins_near(disc, &begin, from, self),
+            let found = equations.piece(ends, near, &|motions| match &end {
+                Some(end) => Ok(motions.holds(&end.found)),
+                None => ScaledEquations::begins_near(motions, self),
             });
             match found {
                 Ok((piece, own_end)) => {
                     pieces.push(piece);
-                    // Of a width like this one's, as far as the proof says.
-                    width = wider(width, own_end.room);
+                    width = wider(width, own_end.contraction);
                     (end, position) = (Some(own_end), next);
                 }
                 Err(NotEnclosed::Never(error)) => return Err(error),
@@ -175,10 +180,10 @@ impl ModeBranch {
     }
 }
 
-/// The width of the next piece.
-fn wider(width: u32, room: f64) -> u32 {
-    const OF_ROOM: f64 = 0.85;
-    let next = f64::from(width) * (OF_ROOM / room).clamp(0.75, 1.5);
+/// The width of the next piece, on which the contraction is to be bounded by a little less than one.
+fn wider(width: u32, contraction: f64) -> u32 {
+    const LESS: f64 = 0.85;
+    let next = f64::from(width) * (LESS / contraction).clamp(0.75, 1.5);
     next.to_u32().unwrap_or(width).max(1)
 }
 
@@ -202,10 +207,9 @@ impl From<NotProved> for NotEnclosed {
 /// The upper end of a piece and its motion.
 struct EndOfPiece {
     approximate: ScaledMotion,
-    motion: ApproximateMotion,
     found: NearMotion,
-    /// The part of what it may be that the product of the bounds of the proof is.
-    room: f64,
+    /// The bound of the contraction of the proof, which has to be below one.
+    contraction: f64,
 }
 
 /// The equations of motions over their amplitude.
@@ -216,10 +220,6 @@ struct ScaledEquations {
     condition: Condition,
     odd: bool,
     solver: ModeSolver,
-    nodes: Vec<Rational>,
-    /// Bounds that belong to the nodes.
-    product: Bound,
-    lebesgue: Bound,
 }
 
 impl ScaledEquations {
@@ -270,9 +270,7 @@ impl ScaledEquations {
         };
         let coordinates = branch.coordinates.clone();
         let solver = ModeSolver::new(&forces, &coordinates, variable, approximate, odd)?;
-        let nodes = nodes();
-        let (product, lebesgue) = (largest_product(&nodes), lebesgue_constant(&nodes));
-        Ok(Self { forces, coordinates, variable, condition, odd, solver, nodes, product, lebesgue })
+        Ok(Self { forces, coordinates, variable, condition, odd, solver })
     }
 
     /// The approximate motion at the lower end of the range.
@@ -285,51 +283,59 @@ impl ScaledEquations {
         self.solver.motion(from, &seed).ok_or_else(none)
     }
 
-    /// Whether the motion of a disc at the lower end of the range is that which names the branch.
-    fn begins_near(
-        &self,
-        disc: &MotionsOnDisc,
-        begin: &ScaledMotion,
-        from: &Rational,
-        branch: &ModeBranch,
-    ) -> Result<bool, NotEnclosed> {
-        let motion = self.approximate(begin);
-        let found = disc.near(&WORKING.fraction(from), &motion)?;
+    /// Whether the motion of a piece at the lower end of the range is that which names the branch, and no other one
+    /// is as near to its numbers.
+    fn begins_near(motions: &MotionsOnPiece, branch: &ModeBranch) -> Result<bool, NotEnclosed> {
         let series = |list: &Vec<Rational>| {
             FourierSeries::exactly(list.iter().map(|c| WORKING.fraction(c)).collect(), vec![])
         };
-        let apart = branch
-            .coefficients
-            .iter()
-            .zip(&motion.motions)
-            .map(|(list, own)| series(list).difference(own).norm());
-        let apart: Bound = apart.sum();
-        let of_mu = WORKING.difference(&WORKING.fraction(&branch.mu), &motion.mu);
-        let apart = apart + WORKING.magnitude(&of_mu);
-        let Some(found) = found else { return Ok(false) };
-        match apart + found.of_all() <= Bound::power_of_two(SAME_MOTION) {
-            true => Ok(true),
-            false => Err(NotEnclosed::Never(LawNotProved::AnotherMode)),
+        let named = ApproximateMotion {
+            mu: WORKING.fraction(&branch.mu),
+            motions: branch.coefficients.iter().map(series).collect(),
+        };
+        let [of_mu, of_motions] = motions.approximate().motion(Sheet::at_begin).apart(&named);
+        let distance = Bound::power_of_two(SAME_MOTION);
+        if of_mu + of_motions + motions.distance_of_all() > distance {
+            return Err(NotEnclosed::Never(LawNotProved::AnotherMode));
         }
+        let sigma = Bound::exactly(1.0);
+        Ok(motions.holds(&NearMotion { motion: named, distance, sigma }))
     }
 
-    /// An approximate motion in the numbers of a proof.
-    fn approximate(&self, motion: &ScaledMotion) -> ApproximateMotion {
-        let ball = |value: f64| WORKING.dyadic(&units(value, BITS), BITS);
-        let series = |list: &Vec<f64>| {
-            let mut balls: Vec<Ball> = list.iter().map(|value| ball(*value)).collect();
-            while balls.last().is_some_and(Ball::is_zero) {
-                balls.pop();
-            }
-            if self.odd {
-                balls.iter_mut().step_by(2).for_each(|even| *even = Ball::zero());
-            }
-            FourierSeries::exactly(balls, vec![]).of_digits(DIGITS)
+    /// Approximate motions of all amplitudes on a piece about that in its middle, and the root of their mu.
+    fn approximate(
+        &self,
+        [middle, half]: [&Rational; 2],
+        own: &ScaledMotion,
+    ) -> Option<(ApproximateMotions, Vec<Integer>, ScaledMotion)> {
+        let angles: Vec<f64> =
+            (0..NODES).map(|j| std::f64::consts::PI * (j as f64 + 0.5) / NODES as f64).collect();
+        let place = |angle: &f64| to_f64(middle) + to_f64(half) * angle.cos();
+        let found = par_map(&angles, |angle| self.solver.motion(place(angle), own));
+        let found = found.into_iter().collect::<Option<Vec<ScaledMotion>>>()?;
+        let row = |value: &dyn Fn(&ScaledMotion) -> f64| -> Vec<Integer> {
+            let coefficient = |n: usize| {
+                let waves = angles.iter().zip(&found);
+                let sum: f64 = waves.map(|(angle, at)| value(at) * (n as f64 * angle).cos()).sum();
+                sum * if n == 0 { 1.0 } else { 2.0 } / NODES as f64
+            };
+            (0..NODES).map(|n| units(coefficient(n), BITS)).collect()
         };
-        ApproximateMotion {
-            mu: ball(motion.mu),
-            motions: motion.cosines.iter().map(series).collect(),
-        }
+        let last = found.iter().flat_map(|at| &at.cosines).map(Vec::len).max().unwrap_or(0);
+        let motion = |i: usize| {
+            let harmonic = |k: usize| match self.odd && k.is_multiple_of(2) {
+                true => vec![],
+                false => row(&|at| at.cosines[i].get(k).copied().unwrap_or(0.0)),
+            };
+            Sheet::of_units(&(0..last).map(harmonic).collect::<Vec<_>>(), BITS)
+        };
+        let [middle, half] = [middle, half].map(|number| WORKING.fraction(number));
+        let approximate = ApproximateMotions {
+            parameter: Sheet::interval(&middle, &half),
+            mu: Sheet::of_units(&[row(&|at| at.mu)], BITS),
+            motions: (0..self.coordinates.len()).map(motion).collect(),
+        };
+        Some((approximate, row(&|at| at.mu.sqrt()), found.into_iter().next()?))
     }
 
     /// The last harmonic of the block: beyond it `mu |Df|/k^2` is small.
@@ -341,30 +347,30 @@ impl ScaledEquations {
         odd_below(last.to_usize().unwrap_or(LEAST).max(LEAST) | 1, most)
     }
 
-    /// `1/omega` between two amplitudes and the motion at the upper one; `joins` says whether the motions of
-    /// the disc are those of the branch.
+    /// `1/omega` between two amplitudes and the motion at the upper one; `joins` says whether the motions are
+    /// those of the branch.
     fn piece(
         &self,
         [from, to]: [&Rational; 2],
         near: &ScaledMotion,
-        joins: &dyn Fn(&MotionsOnDisc) -> Result<bool, NotEnclosed>,
+        joins: &dyn Fn(&MotionsOnPiece) -> Result<bool, NotEnclosed>,
     ) -> Result<(TruthPiece, EndOfPiece), NotEnclosed> {
         let two = Integer::from(2);
         let (middle, half) = ((from + to) / &two, (to - from) / &two);
-        let motion = |place: &Rational, near: &ScaledMotion| {
-            self.solver.motion(to_f64(place), near).ok_or(NotEnclosed::Wide)
-        };
-        let own = motion(&middle, near)?;
-        let approximate = self.approximate(&own);
-        let root_in_middle = WORKING.root(&approximate.mu, 2).ok_or(NotEnclosed::Wide)?;
+        let own = self.solver.motion(to_f64(&middle), near).ok_or(NotEnclosed::Wide)?;
+        let found = self.approximate([&middle, &half], &own).ok_or(NotEnclosed::Wide)?;
+        let (approximate, root, last) = found;
+        let mean = approximate.motion(Sheet::means);
+        let short = |series: FourierSeries| series.of_digits(0).shortened(SHORT);
+        let interval = widened(&WORKING.fraction(&middle), Bound::of_fraction(&half));
         let mut problem = ConservativeProblem {
             forces: self.forces.iter().collect(),
             coordinates: self.coordinates.clone(),
-            parameter: Some((self.variable, WORKING.fraction(&middle))),
+            parameter: Some((self.variable, interval)),
             condition: self.condition.clone(),
             odd: self.odd,
-            motions: approximate.motions,
-            mu: approximate.mu,
+            motions: mean.motions.into_iter().map(short).collect(),
+            mu: mean.mu,
             highest: self.highest(&own),
             inverse: &[],
             inverse_bits: INVERSE_BITS,
@@ -374,31 +380,42 @@ impl ScaledEquations {
         problem.inverse = &inverse;
         // A relative error of mu counts as much as one of the motion.
         problem.sigma = -own.mu.log2().round().to_i32().unwrap_or(0).clamp(-20, 20);
-        let radius = Bound::of_fraction(&(&half * Integer::from(WIDER)));
-        let disc = MotionsOnDisc::new(problem, radius)?;
-        if !joins(&disc)? {
+        let motions = MotionsOnPiece::new(problem, approximate)?;
+        let truth = inverse_frequency(&motions, &root).ok_or(NotEnclosed::Wide)?;
+        if truth.remainder > Bound::power_of_two(ACCURATE) || !joins(&motions)? {
             return Err(NotEnclosed::Wide);
         }
-        let at = |place: &Rational| -> Result<(ScaledMotion, ApproximateMotion, NearMotion), NotEnclosed> {
-            let motion = motion(place, &own)?;
-            let approximate = self.approximate(&motion);
-            let found = disc.near(&WORKING.fraction(place), &approximate)?;
-            Ok((motion, approximate, found.ok_or(NotEnclosed::Wide)?))
-        };
-        let root = |node: &Rational| -> Result<Ball, NotEnclosed> {
-            let (_, motion, found) = at(&(&middle + &half * node))?;
-            WORKING.root(&widened(&motion.mu, found.of_mu), 2).ok_or(NotEnclosed::Wide)
-        };
-        let values = par_map(&self.nodes, root).into_iter().collect::<Result<Vec<Ball>, _>>()?;
-        let (approximate, motion, found) = at(to)?;
-        // |sqrt(mu) - sqrt(mu_c)| <= |mu - mu_c|/sqrt(mu_c), since the real part of a root is positive.
-        let spread = disc.spread_of_mu().over(WORKING.distance_from_zero(&root_in_middle));
-        let off = values.iter().map(|value| value.radius).fold(Bound::ZERO, Bound::max);
-        let remainder = interpolation_error(spread, self.product) + self.lebesgue * off;
-        let truth = PiecePolynomial::through(&self.nodes, values, remainder);
         let piece = TruthPiece { scale: Scale::OWN, middle, half, truth, restitution: None };
-        Ok((piece, EndOfPiece { approximate, motion, found, room: disc.room() }))
+        let contraction = motions.contraction();
+        Ok((piece, EndOfPiece { approximate: last, found: motions.at_end(), contraction }))
     }
+}
+
+/// `1/omega` as a polynomial w, whose coefficients by `cos(n phi)` are given in units: `|1/omega - w|` is
+/// `|mu - w^2|/(1/omega + w)`. `None` where w may be zero.
+fn inverse_frequency(motions: &MotionsOnPiece, root: &[Integer]) -> Option<PiecePolynomial> {
+    let sheet = Sheet::of_units(&[root.to_vec()], BITS);
+    let off = sheet.product(&sheet).difference(&motions.approximate().mu).norm();
+    let mean = WORKING.distance_from_zero(&sheet.coefficient(0, 0));
+    let lowest = (mean - sheet.spread().value()).next_down();
+    let is_positive = root.first().is_some_and(Integer::is_positive) && lowest > 0.0;
+    // Chebyshev's polynomials T_n(e) = cos(n phi), and from each two the next one.
+    let mut powers = vec![Integer::zero(); root.len().max(1)];
+    let (mut one, mut next) = (vec![Integer::from(1)], vec![Integer::zero(), Integer::from(1)]);
+    for (n, unit) in root.iter().enumerate() {
+        // What is negligible is in the sheet no more.
+        if !sheet.coefficient(0, n).is_zero() {
+            one.iter().zip(&mut powers).for_each(|(factor, power)| *power += unit * factor);
+        }
+        let mut later: Vec<Integer> = std::iter::once(Integer::zero())
+            .chain(next.iter().map(|m| m * Integer::from(2)))
+            .collect();
+        one.iter().zip(&mut later).for_each(|(before, own)| *own -= before);
+        (one, next) = (next, later);
+    }
+    let coefficients = powers.iter().map(|power| WORKING.dyadic(power, BITS)).collect();
+    let remainder = (off + motions.distance_of_mu()).over(lowest);
+    is_positive.then(|| PiecePolynomial::new(coefficients, remainder))
 }
 
 /// `f(a v)/a` with the powers of a in front of sums, so that differences stay as they are written: written out,

@@ -55,6 +55,10 @@ pub struct SimulateArguments {
     pub(super) walls: WallArguments,
     #[command(flatten)]
     pub(super) events: EventArguments,
+    /// Static over sliding friction, 1 or more: what dry friction, mu*sgn(x'), holds, it holds up to so
+    /// many times the force with which it slides (1.5, mus/muk)
+    #[arg(long, value_name = "R", allow_hyphen_values = true)]
+    pub(super) static_friction: Option<String>,
     /// Look at an equation or a mechanism of one's own once in this time (Poincaré's section):
     /// 2*pi/Omega
     #[arg(long, value_name = "PERIOD", conflicts_with = "section")]
@@ -155,6 +159,7 @@ fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
         ("--wall", !arguments.walls.wall.is_empty(), "barrier in [pendulum]"),
         ("--restitution", !arguments.walls.restitution.is_empty(), "restitution in [contact]"),
         ("--event", !arguments.events.event.is_empty(), "barrier in [pendulum]"),
+        ("--static-friction", arguments.static_friction.is_some(), "friction in [damping]"),
         ("--every", arguments.every.is_some(), "--sample"),
         ("--section", arguments.section.is_some(), "--sample"),
         ("--lyapunov", arguments.lyapunov, "--sample"),

@@ -168,6 +168,11 @@ fn course(problem: &Problem, asked: &SimulateArguments) -> Result<TrajectoryRequ
     course = course.with_walls(asked.walls.walls(problem)?);
     let events = asked.events.events(problem, &course.rates.states)?;
     course = course.with_events(events);
+    if let Some(text) = &asked.static_friction {
+        let ratio = expression(text)
+            .map_err(|error| Failure::Usage(format!("--static-friction {text}: {error}")))?;
+        course.static_friction = Some(ratio);
+    }
     course.section = section(&course, asked)?;
     let needed = course.parameters();
     let values = exact_values(&asked.at, problem.values_with(&needed))?.unwrap_or_default();

@@ -70,6 +70,8 @@ pub struct Problem {
     pub wall: Vec<WallSection>,
     /// Events.
     pub event: Vec<EventSection>,
+    /// Static over sliding friction: a number, or text such as `"mus/muk"`.
+    pub static_friction: Option<toml::Value>,
     /// The variables of a search for the best design, and its limits.
     pub limits: LimitsSection,
     /// The options of its genetic algorithm.

@@ -97,7 +97,7 @@ fn readers(section: &str, key: &str) -> &'static [ReadingCommand] {
         ("run", "step_limit") => &[Impact, Simulate, Materials, Trajectory, Optimize],
         ("", "[[material]]") => &[Materials, Optimize],
         ("", "[[wall]]") => &[Trajectory, Response, Orbits],
-        ("", "[[event]]") => &[Trajectory],
+        ("", "[[event]]" | "static_friction") => &[Trajectory],
         ("limits" | "genetic", _) => &[Optimize],
         _ => &[Impact, Simulate, Materials, Optimize],
     }
@@ -121,6 +121,7 @@ const SECTIONS: [KeySection; 15] = [
             "resonance",
             "amplitude",
             "about",
+            "static_friction",
             "[values]",
         ]
     }),
@@ -272,6 +273,6 @@ mod tests {
             let section = format!("[{name}]");
             assert!(known.iter().any(|key| key == name || key.contains(&section)), "{name}");
         }
-        assert_eq!(known.len(), 100);
+        assert_eq!(known.len(), 101);
     }
 }

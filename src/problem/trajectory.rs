@@ -1,8 +1,10 @@
 //! The input of `simulate` from a file with an equation or a mechanism of its own.
 
+use super::formula::number_or_text;
 use super::mechanism::no_mechanism;
 use super::{Problem, ProblemError, ReadingCommand};
 use crate::coupled::CoupledEquations;
+use crate::expr::parse_expression;
 use crate::oscillator::Oscillator;
 use crate::trajectory::TrajectoryRequest;
 
@@ -37,6 +39,12 @@ impl Problem {
             (None, Some(equation)) => TrajectoryRequest::of_equation(&Oscillator::parse(equation)?),
             (None, None) => return Err(no_mechanism()),
         };
+        if let Some(value) = &self.static_friction {
+            let text = number_or_text(value, "`static_friction`")?;
+            let ratio = parse_expression(&text)
+                .map_err(|error| ProblemError::new(format!("`static_friction`: {error}")))?;
+            course.static_friction = Some(ratio);
+        }
         course.duration = self.run.duration()?;
         course.step_limit = self.run.step_limit()?;
         Ok(course)

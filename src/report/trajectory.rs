@@ -418,6 +418,9 @@ fn account<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
         .map(|[from, until]| format!("{} to {}", decimal(from), decimal(until)))
         .collect();
     let more = motion.sticking_intervals().count().saturating_sub(MOST_HELD);
+    if let Some(ratio) = &motion.course.static_friction {
+        facts.push(("static friction", format!("{ratio} of the sliding one")));
+    }
     if !held.is_empty() {
         let more = if more == 0 { String::new() } else { format!(", and {more} times more") };
         facts.push(("held by friction", format!("t = {}{more}", held.join(", "))));

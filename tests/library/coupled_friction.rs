@@ -41,6 +41,8 @@ fn simulated(equations: &str, value: (&str, f64), start: &[f64], duration: f64) 
     let course = TrajectoryRequest {
         mass: None,
         walls: vec![],
+        events: vec![],
+        static_friction: None,
         coordinates: equations.coordinates.clone(),
         equations: vec![],
         rates: equations.rates.clone(),

@@ -340,6 +340,82 @@ fn a_sweep_has_the_events_of_each_motion() {
     }
 }
 
+/// A block on a belt of the speed v, on a spring: it sticks until the spring pulls with r mu, and slips back about mu with the amplitude
+/// `sqrt(a^2 + v^2)`, a = (r - 1) mu, for `2 pi - 2 atan(a/v)`; then it is carried for `2 a/v`.
+#[test]
+fn static_friction_makes_a_block_stick_and_slip() {
+    let (mu, r, v) = (0.3_f64, 1.5_f64, 0.2_f64);
+    let a = (r - 1.0) * mu;
+    let slip = 2.0 * PI - 2.0 * a.atan2(v);
+    for integrator in BOTH {
+        let belt =
+            course("x'' + mu*sgn(x' - v) + x = 0", &[], "mu=0.3 r=1.5 v=0.2", &[("x'", v)], 60.0);
+        let belt = TrajectoryRequest { static_friction: Some("r".parse().unwrap()), ..belt };
+        let motion = followed(&belt, integrator);
+        assert!(motion.is_complete(), "{:?}", motion.reason());
+        let held: Vec<[f64; 2]> = motion.sticking_intervals().collect();
+        assert!(is_near(held[0][1], r * mu / v, 1e-9), "{held:?}");
+        assert!(held.len() > 6);
+        for pair in held[..held.len() - 1].windows(2) {
+            assert!(is_near(pair[1][0] - pair[0][1], slip, 1e-8), "{pair:?} {slip}");
+            assert!(is_near(pair[1][1] - pair[1][0], 2.0 * a / v, 1e-8), "{pair:?}");
+        }
+        // On the way the slip is a cosine about mu.
+        for step in 1..10 {
+            let tau = 0.1 * f64::from(step) * slip;
+            let expected = mu + a * tau.cos() + v * tau.sin();
+            assert!(is_near(states(&motion, held[0][1] + tau)[0], expected, 1e-9));
+        }
+        assert!(motion.balance.as_ref().is_some_and(|balance| balance.residual < 1e-9));
+        // With one coefficient the block slides from x = mu on, where nothing pulls it back.
+        let sliding = followed(&TrajectoryRequest { static_friction: None, ..belt }, integrator);
+        assert_eq!(sliding.sticking_intervals().count(), 1);
+    }
+}
+
+/// A block at rest stays until the force is that of static friction; a free swing comes to rest at the first turn
+/// within r mu, where the sliding friction alone would not hold it.
+#[test]
+fn static_friction_holds_more_than_sliding() {
+    for integrator in BOTH {
+        let with = |equation: &str, ratio: &str, start: &[(&str, f64)]| {
+            let course = course(equation, &[], "", start, 40.0);
+            let ratio = Some(ratio.parse().unwrap());
+            followed(&TrajectoryRequest { static_friction: ratio, ..course }, integrator)
+        };
+        let pulled = with("x'' + 2*sgn(x') = t/4", "5/4", &[]);
+        let held: Vec<[f64; 2]> = pulled.sticking_intervals().collect();
+        assert_eq!(held.len(), 1);
+        assert!(is_near(held[0][1], 10.0, 1e-9), "{held:?}");
+        // From t = 10 on: x'' = t/4 - 2.
+        let expected = |time: f64| {
+            let (s, t) = (time - 10.0, 2.5 - 2.0);
+            t * s * s / 2.0 + s * s * s / 24.0
+        };
+        assert!(is_near(states(&pulled, 30.0)[0], expected(30.0), 1e-9));
+        // The turns are at -0.95, 0.75, -0.55, 0.35, -0.15 and -0.05.
+        for (ratio, rest) in
+            [("1", -0.05), ("2", -0.15), ("4", 0.35), ("6", -0.55), ("10", -0.95), ("12", 1.15)]
+        {
+            let swing = with("x'' + 0.1*sgn(x') + x = 0", ratio, &[("x", 1.15)]);
+            assert!(
+                is_near(states(&swing, 40.0)[0], rest, 1e-9),
+                "{ratio}: {:?}",
+                states(&swing, 40.0)
+            );
+            assert!(states(&swing, 40.0)[1] == 0.0);
+        }
+    }
+    let less = course("x'' + sgn(x') + x = 0", &[], "", &[("x", 3.0)], 5.0);
+    let less = TrajectoryRequest { static_friction: Some("1/2".parse().unwrap()), ..less };
+    let error = less.follow().unwrap_err().to_string();
+    assert!(error.contains("must be 1 or more"), "{error}");
+    let none = course("x'' + x = 0", &[], "", &[("x", 3.0)], 5.0);
+    let none = TrajectoryRequest { static_friction: Some("2".parse().unwrap()), ..none };
+    let error = none.follow().unwrap_err().to_string();
+    assert!(error.contains("needs a dry friction"), "{error}");
+}
+
 /// The exponent of a kicked oscillator on its cycle is that of its damping: the kick moves all motions alike.
 #[test]
 fn the_exponent_passes_events() {

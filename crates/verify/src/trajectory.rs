@@ -54,7 +54,7 @@ pub use sweep::{SweptMotion, sweep};
 use event_run::{EventRun, RunEnd};
 use events::{CompiledEvents, WORK_OF_EVENTS};
 pub use events::{EventOccurrence, EventRecord};
-use hold::Layout;
+use hold::{Layout, friction_arguments};
 use resting::resting_equations;
 pub(crate) use root::roots_across_corners;
 use section::OnSection;
@@ -81,6 +81,9 @@ pub struct TrajectoryRequest {
     pub walls: Vec<Wall>,
     /// The events.
     pub events: Vec<StateEvent>,
+    /// Static over sliding friction, 1 or more: the force at which dry friction that holds something lets go,
+    /// over that with which it slides; `None` for 1.
+    pub static_friction: Option<Expr>,
     /// A number for every parameter.
     pub values: BTreeMap<Symbol, f64>,
     /// Initial positions and velocities, in the order of the states.
@@ -219,6 +222,12 @@ pub enum TrajectoryError {
         /// The time.
         time: f64,
     },
+    /// Static friction that is less than the sliding one, or has no value.
+    #[error("static over sliding friction, `{0}`, is {1}: it must be 1 or more")]
+    StaticFriction(Expr, f64),
+    /// Static friction in equations without dry friction.
+    #[error("static friction needs a dry friction in the equations, such as `mu*sgn(x')`")]
+    WithoutFriction,
     /// A wall whose gap has no value.
     #[error("the gap `{0}` of a wall: {1}")]
     WallUndefined(Expr, EvaluationError),
@@ -374,6 +383,7 @@ impl TrajectoryRequest {
             mass: None,
             walls: vec![],
             events: vec![],
+            static_friction: None,
             values: BTreeMap::new(),
             duration: 50.0,
             section: None,
@@ -414,6 +424,7 @@ impl TrajectoryRequest {
         let mass = self.mass.iter().flatten().flatten().filter(|_| !self.walls.is_empty());
         let events = self.events.iter().flat_map(StateEvent::expressions);
         let all = self.rates.right.iter().chain(section).chain(walls).chain(mass).chain(events);
+        let all = all.chain(&self.static_friction);
         let all = all.flat_map(Expr::symbols);
         all.filter(|name| !self.is_variable(*name)).collect()
     }
@@ -589,6 +600,19 @@ impl TrajectoryRequest {
         }
     }
 
+    /// The value of static over sliding friction.
+    ///
+    /// # Errors
+    /// A value below 1, or none.
+    fn static_friction_value(&self) -> Result<f64, TrajectoryError> {
+        let Some(ratio) = &self.static_friction else { return Ok(1.0) };
+        let value = ratio.evaluate(&self.values).unwrap_or(f64::NAN);
+        match value >= 1.0 && value.is_finite() {
+            true => Ok(value),
+            false => Err(TrajectoryError::StaticFriction(ratio.clone(), value)),
+        }
+    }
+
     /// Whether the equations have digits where it begins.
     fn check_start(&self) -> Result<(), TrajectoryError> {
         let mut at_start = self.values.clone();
@@ -666,10 +690,24 @@ impl TrajectoryRequest {
         let guards = [on_walls.guards, watched].concat();
         events.extend(guards.iter().map(|guard| Event::stop(guard.clone()).falling()));
         let Rates { states, right } = moving;
+        let static_friction = self.static_friction_value()?;
+        let mut frictions = match self.static_friction {
+            Some(_) => friction_arguments(&states, &right),
+            None => vec![],
+        };
+        if self.static_friction.is_some() && frictions.is_empty() {
+            return Err(TrajectoryError::WithoutFriction);
+        }
+        if static_friction == 1.0 {
+            frictions.clear();
+        }
+        events.extend(frictions.iter().cloned().map(Event::stop));
         Ok(Ready {
             solver: system.solver(&events, &self.options(integrator)),
             recorded,
             guards,
+            static_friction,
+            frictions,
             walls: if resting.is_empty() { CompiledWalls::new(self)? } else { None },
             events: if resting.is_empty() { CompiledEvents::new(self, first)? } else { None },
             states,
@@ -697,6 +735,11 @@ struct Ready {
     /// Functions at whose fall through zero a stretch ends: the gap of each wall, or its force; then the
     /// watched guard of each event.
     guards: Vec<Expr>,
+    /// Static over sliding friction.
+    static_friction: f64,
+    /// The arguments of dry frictions, at whose zeros static friction may hold; none where it is the
+    /// sliding one.
+    frictions: Vec<Expr>,
     /// The walls, of a flight.
     walls: Option<CompiledWalls>,
     /// The events, of a flight.
@@ -721,11 +764,18 @@ impl Ready {
         // The solver refuses other numbers in roots, by which they are written across corners.
         let solver = self.solver.with_numbers(&values)?;
         let critical = pulse::critical_times(&self.right, &self.states, &values, course.duration);
+        // Without static friction there are fewer events.
+        let static_friction = course.static_friction_value().ok()?;
+        if (static_friction > 1.0) != (self.static_friction > 1.0) {
+            return None;
+        }
         Some(Self {
             states: self.states.clone(),
             right: self.right.clone(),
             recorded: self.recorded,
             guards: self.guards.clone(),
+            static_friction,
+            frictions: self.frictions.clone(),
             walls: self.walls.as_ref().map(|walls| walls.with_numbers(course)).transpose().ok()?,
             events: self.events.as_ref().map(|events| events.with_numbers(course)),
             solver: solver.with_critical_times(&critical),

@@ -144,6 +144,81 @@ WallsDocument.OPTIONAL = frozenset(['order_matters'])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class Event(Document):
+    """An event.
+
+    Attributes:
+        guard: The expression that grows through zero there.
+        both_ways: Whether the event takes place as well where the guard falls through zero.
+        set: The states that are set, each with the formula of its new value.
+    """
+
+    guard: str
+    both_ways: bool
+    set: dict[str, str]
+
+
+Event.FIELDS = (
+    ("guard", "guard", None),
+    ("both_ways", "both_ways", None),
+    ("set", "set", dict),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class EventOccurrence(Document):
+    """An event that took place.
+
+    Attributes:
+        t: The time.
+        event: The event, counted from 0.
+        before: Coordinates and velocities before it.
+        after: Coordinates and velocities behind it.
+        energy_lost: The energy that the event takes, negative where it gives some; null where no
+            energy is accounted for.
+    """
+
+    t: float
+    event: int
+    before: dict[str, float]
+    after: dict[str, float]
+    energy_lost: float | None
+
+
+EventOccurrence.FIELDS = (
+    ("t", "t", None),
+    ("event", "event", None),
+    ("before", "before", dict),
+    ("after", "after", dict),
+    ("energy_lost", "energy_lost", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class EventsDocument(Document):
+    """The events of a motion.
+
+    Attributes:
+        events: The events.
+        occurrences: The times at which they took place, in order.
+        order_matters: The first time at which several events took place at once and their order
+            matters; left out if there is none.
+    """
+
+    events: tuple[Event, ...]
+    occurrences: tuple[EventOccurrence, ...]
+    order_matters: float | None
+
+
+EventsDocument.FIELDS = (
+    ("events", "events", several(Event.from_json)),
+    ("occurrences", "occurrences", several(EventOccurrence.from_json)),
+    ("order_matters", "order_matters", None),
+)
+EventsDocument.OPTIONAL = frozenset(['order_matters'])
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Motion(Answer):
     """A motion in numbers, of an equation of motion or of a mechanism of several coordinates. Units
     are those of the values given.
@@ -169,7 +244,9 @@ class Motion(Answer):
             and it was not asked for.
         held: The stretches of time, from when until when, on which dry friction holds something:
             at rest, on a belt or on another body.
+        static_friction: Static over sliding friction, a formula; left out where it was not given.
         walls: The walls with the impacts on them; left out without a wall.
+        events: The events; left out without one.
         stopped: Why it ends where it does.
         complete: Whether it was followed as long as asked, its energy is accounted for and the
             other integrator, where asked for, agrees.
@@ -189,7 +266,9 @@ class Motion(Answer):
     known_until: float | None
     lyapunov: LyapunovExponent | None
     held: tuple[tuple[float, float], ...]
+    static_friction: str | None
     walls: WallsDocument | None
+    events: EventsDocument | None
     stopped: str
     complete: bool
 
@@ -209,8 +288,10 @@ Motion.FIELDS = (
     ("known_until", "known_until", None),
     ("lyapunov", "lyapunov", LyapunovExponent.from_json),
     ("held", "held", several(tuple)),
+    ("static_friction", "static_friction", None),
     ("walls", "walls", WallsDocument.from_json),
+    ("events", "events", EventsDocument.from_json),
     ("stopped", "stopped", None),
     ("complete", "complete", None),
 )
-Motion.OPTIONAL = frozenset(['known_until', 'lyapunov', 'walls'])
+Motion.OPTIONAL = frozenset(['events', 'known_until', 'lyapunov', 'static_friction', 'walls'])

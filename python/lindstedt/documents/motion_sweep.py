@@ -20,6 +20,7 @@ class SweptMotion(Document):
         extremes: The least and the greatest value of each coordinate.
         section: The states on the section; null where none was asked for.
         impacts: The number of impacts on walls; left out without a wall.
+        events: The number of events; left out without one.
         stopped: Why it ends where it does.
         complete: Whether it was followed as long as asked.
     """
@@ -29,6 +30,7 @@ class SweptMotion(Document):
     extremes: dict[str, tuple[float, float]]
     section: Section | None
     impacts: int | None
+    events: int | None
     stopped: str
     complete: bool
 
@@ -39,10 +41,11 @@ SweptMotion.FIELDS = (
     ("extremes", "extremes", mapped(tuple)),
     ("section", "section", Section.from_json),
     ("impacts", "impacts", None),
+    ("events", "events", None),
     ("stopped", "stopped", None),
     ("complete", "complete", None),
 )
-SweptMotion.OPTIONAL = frozenset(['impacts'])
+SweptMotion.OPTIONAL = frozenset(['events', 'impacts'])
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -56,6 +56,9 @@ pub struct MotionDocument {
     /// The stretches of time, from when until when, on which dry friction holds something: at rest,
     /// on a belt or on another body.
     pub held: Vec<[f64; 2]>,
+    /// Static over sliding friction, a formula; left out where it was not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub static_friction: Option<String>,
     /// The walls with the impacts on them; left out without a wall.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub walls: Option<WallsDocument>,
@@ -339,6 +342,7 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
             from: exponent.from,
         }),
         held: motion.sticking_intervals().collect(),
+        static_friction: course.static_friction.as_ref().map(ToString::to_string),
         walls: (!course.walls.is_empty()).then(|| WallsDocument::new(motion)),
         events: (!course.events.is_empty()).then(|| EventsDocument::new(motion)),
         stopped: in_words(motion.reason()).to_owned(),

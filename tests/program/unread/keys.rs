@@ -90,6 +90,7 @@ const LINES: [(&str, &str, &str); 99] = [
     ("[run] step_limit", "[run]\nstep_limit = 3", ""),
     ("[[material]]", "[[material]]\nname = \"Cork\"\nmodulus = 2e7", ""),
     ("[[wall]]", "[[wall]]\nbound = \"x < 9\"\nrestitution = 1", FORMULA),
+    ("static_friction", "static_friction = 2", FORMULA),
     ("[[event]]", "[[event]]\nwhen = \"x < 0\"\nset = \"x' = -x'\"", FORMULA),
     ("[limits] mass", "[limits]\nmass = [0.02, 0.05]", ""),
     ("[limits] radius", "[limits]\nradius = [0.002, 0.01]", ""),

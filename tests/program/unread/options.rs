@@ -162,6 +162,8 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("simulate", own[1..].to_vec(), vec!["--wall", "x > 0", "--restitution", "1/2"]),
         ("simulate", own[1..].to_vec(), vec!["--restitution", "1/2"]),
         ("simulate", own[1..].to_vec(), vec!["--event", "x < 0: x' = -x'"]),
+        ("simulate", own[1..].to_vec(), vec!["--static-friction", "2"]),
+        ("simulate", vec![], vec!["--static-friction", "2"]),
         ("simulate", vec![], vec!["--event", "x < 0: x' = -x'"]),
         ("simulate", own[1..].to_vec(), vec!["--lyapunov"]),
         ("simulate", vec![], vec!["--wall", "x > 0"]),

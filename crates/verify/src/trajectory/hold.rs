@@ -16,6 +16,11 @@
 //! At the onset of a slip u_i and its rate are both zero, so that rounding decides in which
 //! direction u_i leaves its zero. Therefore only crossings in one direction end a segment, and each
 //! such event has a second one at a level that rounding does not reach.
+//!
+//! Where static friction is r > 1 times the sliding one, a held surface is released where |s_i| grows
+//! through r (H. Olsson, K. J. Åström, C. Canudas de Wit, M. Gäfvert, P. Lischinsky, *European Journal of Control* 4
+//! (1998) 176, section 2). The equations as typed do not show that a motion with 1 < |s_i| < r is held, so that each
+//! zero of a u_i ends a segment.
 
 use std::collections::BTreeMap;
 
@@ -113,6 +118,10 @@ impl TrajectoryRequest {
         let options = self.options(integrator);
         let (mut pieces, mut regimes) = (Vec::new(), Regimes::new());
         let (mut first, mut from, mut state) = (first, from, state);
+        if equations.static_friction > 1.0 {
+            let found = surfaces(equations, from, &state)?;
+            regimes = regimes_at(equations, found, from, &state, None)?.unwrap_or_default();
+        }
         let (mut idle, mut holds) = (0, 0);
         let reason = loop {
             let piece = match regimes.iter().all(|(_, regime)| *regime == SurfaceRegime::Typed) {
@@ -217,6 +226,14 @@ impl TrajectoryRequest {
             events.push(Event::stop(guard.substitute_all(&sliding.fixed)?).falling());
         }
         events.extend(sliding.events);
+        for u in &equations.frictions {
+            let is_known = |(surface, _): &(Surface, SurfaceRegime)| {
+                surface.arguments.iter().any(|(argument, _)| argument == u)
+            };
+            if !regimes.iter().any(is_known) {
+                events.push(Event::stop(u.substitute_all(&sliding.fixed)?));
+            }
+        }
         let Ok(system) = System::new(&names, Symbol::new("t"), &right, &equations.values) else {
             return Ok(None);
         };
@@ -279,6 +296,32 @@ fn velocities(equations: &Ready) -> impl Iterator<Item = Symbol> {
     let states = &equations.states;
     let is_position = move |name: &&Symbol| states.contains(&name.derivative());
     states.iter().filter(move |name| !is_position(name)).copied()
+}
+
+/// The arguments of `sgn` and `H` in rates that are linear in the velocities: where one is zero, static friction
+/// may hold.
+pub(super) fn friction_arguments(states: &[Symbol], right: &[Expr]) -> Vec<Expr> {
+    let is_position = |name: &&Symbol| states.contains(&name.derivative());
+    let velocities: Vec<Symbol> =
+        states.iter().filter(|name| !is_position(name)).copied().collect();
+    let is_linear = |argument: &Expr| {
+        let mut slopes = velocities.iter().map(|velocity| argument.differentiate(*velocity));
+        velocities.iter().any(|velocity| argument.contains(*velocity))
+            && slopes.all(|slope| {
+                slope.is_ok_and(|slope| velocities.iter().all(|name| !slope.contains(*name)))
+            })
+    };
+    let jumps = |part: &Expr| match part.node() {
+        Node::Function(Function::Sign | Function::Step, arguments) => arguments.first().cloned(),
+        _ => None,
+    };
+    let mut found: Vec<Expr> = Vec::new();
+    for argument in right.iter().flat_map(|right| right.unique_nodes().filter_map(jumps)) {
+        if !found.contains(&argument) && is_linear(&argument) {
+            found.push(argument);
+        }
+    }
+    found
 }
 
 /// A velocity that an expression is linear in, the one that it depends on most here, and its
@@ -394,6 +437,7 @@ fn regimes_at(
             regimes.push((surface, SurfaceRegime::Held));
         }
     }
+    let most = equations.static_friction;
     let mut excess = f64::INFINITY;
     loop {
         if !tie_frictions(equations, &mut regimes, &numbers)? {
@@ -421,7 +465,7 @@ fn regimes_at(
                     || matches!(regime, SurfaceRegime::Tied(lead, _) if lead == index);
                 of_one_size && hit == Some(&surface.u)
             });
-            let bound = if is_hit { 1.0 - ROUNDING } else { 1.0 + ROUNDING };
+            let bound = most * if is_hit { 1.0 - ROUNDING } else { 1.0 + ROUNDING };
             if share.abs() > bound && worst.is_none_or(|(_, largest)| share.abs() > largest.abs()) {
                 worst = Some((*index, share));
             }
@@ -437,10 +481,10 @@ fn regimes_at(
                     regime => regime,
                 };
             }
-            excess = excess.min(share.abs() - 1.0);
+            excess = excess.min(share.abs() / most - 1.0);
             continue;
         }
-        if sliding.shares.is_empty() && excess > CLEARLY {
+        if sliding.shares.is_empty() && excess > CLEARLY && most == 1.0 {
             // The equations as typed determine the motion at a corner.
             regimes.iter_mut().for_each(|(_, regime)| *regime = SurfaceRegime::Typed);
         }
@@ -665,7 +709,8 @@ fn sliding(
             }
             SurfaceRegime::Held => {
                 let share = values.get(&share(index)).cloned().unwrap_or_else(Expr::zero);
-                let [one, more] = [1.0, 1.0 + 2.0 * ROUNDING].map(number);
+                let most = equations.static_friction;
+                let [one, more] = [most, most * (1.0 + 2.0 * ROUNDING)].map(number);
                 [
                     Event::stop(&share - &one).rising(),
                     Event::stop(&share + &one).falling(),

@@ -8,7 +8,7 @@
 //! (R. Goebel, R. G. Sanfelice, A. R. Teel, *Hybrid Dynamical Systems*, Princeton 2012, chapters 1 and 2.)
 //! A rigid [wall](crate::wall) is an event with the law of impact as its reset, on which a motion may also rest.
 
-use crate::expr::{Expr, ParseError, parse_event};
+use crate::expr::{Assignments, Expr, ParseError, parse_event};
 use crate::symbol::Symbol;
 
 /// An event of a motion.
@@ -20,7 +20,7 @@ pub struct StateEvent {
     /// Whether the event takes place as well where the guard falls through zero.
     pub both_ways: bool,
     /// The states that are set, and their values behind the event in terms of the states before.
-    pub assignments: Vec<(Symbol, Expr)>,
+    pub assignments: Assignments,
 }
 
 impl StateEvent {

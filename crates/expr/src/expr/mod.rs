@@ -69,8 +69,9 @@ pub use function::Function;
 // Problem files show the place of an error in the same way.
 pub use parse::excerpt;
 pub use parse::{
-    Equation, NAMES_OF_ANSWERS, ParseError, equation_in_grammar, expression_in_grammar,
-    parse_equation, parse_equations, parse_event, parse_expression, parse_inequality,
+    Assignments, Equation, NAMES_OF_ANSWERS, ParseError, equation_in_grammar,
+    expression_in_grammar, parse_equation, parse_equations, parse_event, parse_expression,
+    parse_inequality,
 };
 pub use print::Fraction;
 pub use print::Inside;

@@ -37,7 +37,7 @@ pub use error::excerpt;
 use error::shortened;
 use lexer::{Token, TokenKind};
 pub use notation::{equation_in_grammar, expression_in_grammar};
-pub use relations::{parse_equations, parse_event, parse_inequality};
+pub use relations::{Assignments, parse_equations, parse_event, parse_inequality};
 
 /// Names of the amplitudes and the frequency in an answer. If an equation uses one of them as a
 /// parameter, `Oscillator::with_own_names_apart` keeps it apart before a formula is derived, and

@@ -9,6 +9,9 @@
 use super::{Expr, ParseError, Parser, TokenKind, parse_expression};
 use crate::symbol::Symbol;
 
+/// The states that an event sets, with their new values.
+pub type Assignments = Vec<(Symbol, Expr)>;
+
 /// Reads an event of a motion with these states: a condition, a colon, and what is set where it comes
 /// true. The word `when` before the condition may be left out.
 ///
@@ -31,10 +34,7 @@ use crate::symbol::Symbol;
 /// assert!(parse_event("x = 0: z = 1", &["x".into()]).is_err());
 /// # Ok::<(), lindstedt::expr::ParseError>(())
 /// ```
-pub fn parse_event(
-    text: &str,
-    states: &[Symbol],
-) -> Result<(Expr, bool, Vec<(Symbol, Expr)>), ParseError> {
+pub fn parse_event(text: &str, states: &[Symbol]) -> Result<(Expr, bool, Assignments), ParseError> {
     let first = text.len() - text.trim_start().len();
     let spoken = text[first..].strip_prefix("when").filter(|rest| rest.starts_with(' '));
     let first = spoken.map_or(first, |rest| text.len() - rest.len());
@@ -95,11 +95,7 @@ fn condition_of_event(text: &str) -> Result<(Expr, bool), ParseError> {
 }
 
 /// The assignments in a text from this byte on.
-fn assignments(
-    text: &str,
-    from: usize,
-    states: &[Symbol],
-) -> Result<Vec<(Symbol, Expr)>, ParseError> {
+fn assignments(text: &str, from: usize, states: &[Symbol]) -> Result<Assignments, ParseError> {
     let mut assignments: Vec<(Symbol, Expr)> = Vec::new();
     let mut first = from;
     for part in text[from..].split(';') {

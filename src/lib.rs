@@ -39,6 +39,7 @@
 //! | [`hill`] | says where rest is stable under periodic coefficients: transition curves, multipliers | [`hill::transition_curves`] |
 //! | [`coupled`] | reads coupled equations of motion of any number of coordinates | [`coupled::CoupledEquations`] |
 //! | [`wall`] | reads rigid walls with a coefficient of restitution | [`wall::Wall`] |
+//! | [`contact`] | writes walls that give way as forces in the equations | [`contact::CompliantContact`] |
 //! | [`event`] | reads events: a condition, and the values that states take where it comes true | [`event::StateEvent`] |
 //! | [`mechanics`] | makes equations of motion from energies; units, dimensionless groups, modes | [`mechanics::Mechanism`] |
 //! | [`impact`] | a pendulum that hits an elastic barrier: three phases in closed form, or event by event | [`impact::solve`], [`impact::simulate`](impact::simulate()) |
@@ -74,7 +75,7 @@
 #![warn(missing_docs)]
 
 #[doc(inline)]
-pub use lindstedt_dynamics::{coupled, event, mechanics, system, wall};
+pub use lindstedt_dynamics::{contact, coupled, event, mechanics, system, wall};
 #[doc(inline)]
 pub use lindstedt_expr::{exact, expr};
 #[doc(inline)]

@@ -28,7 +28,7 @@ use super::progress::{MOTIONS, PartsBar};
 use super::session;
 use super::shard::{self, Points, ShardArguments};
 use super::trajectory;
-use super::walls::{EventArguments, WallArguments};
+use super::walls::{ContactArguments, EventArguments, WallArguments};
 use super::{Common, Failure, Format, Outcome, Work, json_text, text_writer};
 
 /// The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time; or any
@@ -59,6 +59,8 @@ pub struct SimulateArguments {
     /// many times the force with which it slides (1.5, mus/muk)
     #[arg(long, value_name = "R", allow_hyphen_values = true)]
     pub(super) static_friction: Option<String>,
+    #[command(flatten)]
+    contacts: ContactArguments,
     /// Look at an equation or a mechanism of one's own once in this time (Poincaré's section):
     /// 2*pi/Omega
     #[arg(long, value_name = "PERIOD", conflicts_with = "section")]
@@ -146,7 +148,7 @@ fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
     }
     let problem = match &arguments.problem {
         None => Problem::default(),
-        Some(text) => problem(text)?,
+        Some(text) => arguments.contacts.on(problem(text)?)?,
     };
     if problem.equation.is_some() || problem.lagrangian.is_some() {
         return run_equation(arguments, &problem);
@@ -160,6 +162,7 @@ fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
         ("--restitution", !arguments.walls.restitution.is_empty(), "restitution in [contact]"),
         ("--event", !arguments.events.event.is_empty(), "barrier in [pendulum]"),
         ("--static-friction", arguments.static_friction.is_some(), "friction in [damping]"),
+        ("--contact", !arguments.contacts.contact.is_empty(), "[contact]"),
         ("--every", arguments.every.is_some(), "--sample"),
         ("--section", arguments.section.is_some(), "--sample"),
         ("--lyapunov", arguments.lyapunov, "--sample"),

@@ -66,7 +66,7 @@ pub struct Problem {
     pub units: BTreeMap<String, String>,
     /// The materials of a study, or those a search chooses from.
     pub material: Vec<MaterialSection>,
-    /// Rigid walls.
+    /// Walls; those that give way are terms of the equations once the file is read.
     pub wall: Vec<WallSection>,
     /// Events.
     pub event: Vec<EventSection>,
@@ -227,14 +227,16 @@ pub struct MaterialSection {
     pub damping: Option<f64>,
 }
 
-/// `[[wall]]`: a rigid wall.
+/// `[[wall]]`: a wall, rigid or with a law of contact.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WallSection {
     /// The side on which motions are allowed: `"x < d"`.
     pub bound: String,
-    /// The coefficient of restitution: a number, or text such as `"e"`.
+    /// The coefficient of restitution of a rigid wall: a number, or text such as `"e"`.
     pub restitution: Option<toml::Value>,
+    /// The law of a wall that gives way and its quantities: `"hertz K=1e5"`.
+    pub contact: Option<String>,
 }
 
 /// `[[event]]`: a condition, and what is set where it comes true.

@@ -98,6 +98,7 @@ fn readers(section: &str, key: &str) -> &'static [ReadingCommand] {
         ("", "[[material]]") => &[Materials, Optimize],
         ("", "[[wall]]") => &[Trajectory, Response, Orbits],
         ("", "[[event]]" | "static_friction") => &[Trajectory],
+        ("", "[[wall]] contact") => &[Derive, Compare, Lagrange, Trajectory, Response, Shortest],
         ("limits" | "genetic", _) => &[Optimize],
         _ => &[Impact, Simulate, Materials, Optimize],
     }
@@ -136,7 +137,7 @@ const SECTIONS: [KeySection; 15] = [
     ("sphere", keys_of::<SphereSection>),
     ("barrier", keys_of::<BarrierSection>),
     ("run", keys_of::<Run>),
-    ("", || &["[[material]]", "[[wall]]", "[[event]]"]),
+    ("", || &["[[material]]", "[[wall]]", "[[wall]] contact", "[[event]]"]),
     ("limits", keys_of::<LimitsSection>),
     ("genetic", keys_of::<GeneticSection>),
 ];
@@ -196,7 +197,18 @@ pub(super) fn given(file: &toml::Table) -> Vec<String> {
             toml::Value::Table(_) if name == "values" || name == "units" => {
                 keys.push(format!("[{name}]"))
             }
-            toml::Value::Array(_) if ["material", "wall", "event"].contains(&name.as_str()) => {
+            toml::Value::Array(walls) if name == "wall" => {
+                let is_compliant = |wall: &&toml::Value| wall.get("contact").is_some();
+                let compliant = walls.iter().filter(is_compliant).count();
+                // Walls that give way are terms of the equations.
+                if compliant > 0 {
+                    keys.push("[[wall]] contact".to_owned());
+                }
+                if compliant < walls.len() {
+                    keys.push("[[wall]]".to_owned());
+                }
+            }
+            toml::Value::Array(_) if ["material", "event"].contains(&name.as_str()) => {
                 keys.push(format!("[[{name}]]"))
             }
             toml::Value::Table(section) => {
@@ -273,6 +285,6 @@ mod tests {
             let section = format!("[{name}]");
             assert!(known.iter().any(|key| key == name || key.contains(&section)), "{name}");
         }
-        assert_eq!(known.len(), 101);
+        assert_eq!(known.len(), 102);
     }
 }

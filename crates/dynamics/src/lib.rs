@@ -24,6 +24,8 @@ pub mod coupled;
 
 pub mod wall;
 
+pub mod contact;
+
 pub mod event;
 
 pub use interrupt::{Interrupt, Progress};

@@ -19,7 +19,6 @@ mod hold;
 mod prepared;
 mod pulse;
 mod resting;
-mod root;
 mod section;
 mod sensitivity;
 mod state_functions;
@@ -41,7 +40,8 @@ use crate::mechanics::{EquationsOfMotion, MechanicsError, Mechanism, Rates};
 use crate::oscillator::Oscillator;
 use crate::symbol::{Symbol, fresh};
 use crate::system::{
-    Event, Integrator, Path, PathEnd, Solver, System, SystemError, SystemOptions, solve_together,
+    Event, Integrator, Path, PathEnd, Solver, System, SystemError, SystemOptions,
+    roots_across_corners, solve_together,
 };
 
 use crate::wall::{Wall, WallError};
@@ -56,7 +56,6 @@ use events::{CompiledEvents, WORK_OF_EVENTS};
 pub use events::{EventOccurrence, EventRecord};
 use hold::{Layout, friction_arguments};
 use resting::resting_equations;
-pub(crate) use root::roots_across_corners;
 use section::OnSection;
 pub(crate) use surplus::of_one_size as shares_of_one_size;
 pub(crate) use two_sided::by_sides;

@@ -3,9 +3,11 @@
 //! ```text
 //! cargo run --release --example measurements pendulum > examples/fit/pendulum.csv
 //! cargo run --release --example measurements backbone > examples/fit/backbone.csv
+//! cargo run --release --example measurements response > examples/fit/response.csv
 //! cargo run --release --example measurements impacts > examples/fit/impacts.csv
 //! ```
 
+use lindstedt::numeric::ode::{IntegrationOptions, State, integrate};
 use lindstedt::trajectory::TrajectoryRequest;
 use lindstedt::wall::Wall;
 use lindstedt::{Options, Oscillator, judge, solve};
@@ -15,6 +17,7 @@ use rand_chacha::ChaCha8Rng;
 pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     match std::env::args().nth(1).as_deref() {
         Some("backbone") => backbone(),
+        Some("response") => response(),
         Some("impacts") => impacts(),
         _ => pendulum(),
     }
@@ -60,6 +63,43 @@ fn backbone() -> Result<(), Box<dyn std::error::Error>> {
         let amplitude = f64::from(row) / 20.0;
         let judged = judge(&spring, &solution, &format!("A = {row}/20").parse()?, 1.0)?;
         println!("{amplitude:.2},{:.3}", judged.true_frequency / std::f64::consts::TAU);
+    }
+    Ok(())
+}
+
+/// A driven oscillator with a cubic spring, swept up and down through both folds of its response: the first
+/// harmonic, once the motion has settled.
+fn response() -> Result<(), Box<dyn std::error::Error>> {
+    const HARMONIC: u32 = 200;
+    let up = (0..22).map(|step| 0.6 + 0.04 * f64::from(step));
+    let down = (0..13).map(|step| 2.0 - 0.05 * f64::from(step));
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    let options = IntegrationOptions::default();
+    println!(
+        "# x'' + c*x' + k*x + b*x^3 = F*cos(Omega*t) with c = 0.1, k = 1, b = 0.5, F = 0.3, swept up, then down."
+    );
+    println!("Omega,amplitude,phase (deg)");
+    let (mut x, mut v) = (0.0, 0.0);
+    for omega in up.chain(down) {
+        let acceleration =
+            |t: f64, x: f64, v: f64| 0.3 * (omega * t).cos() - 0.1 * v - x - 0.5 * x.powi(3);
+        let period = std::f64::consts::TAU / omega;
+        let settled = 60.0 * period;
+        let motion =
+            integrate(acceleration, State { t: 0.0, x, v }, settled + period, &[], &options)?;
+        let (mut cosine, mut sine) = (0.0, 0.0);
+        for sample in 0..HARMONIC {
+            let part = f64::from(sample) / f64::from(HARMONIC);
+            let (x, _) =
+                motion.phase_point_at(settled + part * period).ok_or("the motion ended")?;
+            let (s, c) = (std::f64::consts::TAU * part).sin_cos();
+            cosine += 2.0 * x * c / f64::from(HARMONIC);
+            sine += 2.0 * x * s / f64::from(HARMONIC);
+        }
+        (x, v) = (motion.end().x, motion.end().v);
+        let amplitude = cosine.hypot(sine) + 2e-3 * noise(&mut random);
+        let phase = sine.atan2(cosine).to_degrees() + 0.3 * noise(&mut random);
+        println!("{omega:.2},{amplitude:.4},{phase:.2}");
     }
     Ok(())
 }

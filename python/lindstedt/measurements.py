@@ -61,6 +61,8 @@ class Fit(FitDocument):
         names = list(columns := self.curve)
         if "measured" not in columns:
             ax.plot(columns[names[0]], columns[names[1]], "o", label="measured")
+            if "law_amplitude" in columns:
+                ax.plot(columns[names[0]], columns["law_amplitude"], ".", label="law")
             return labelled(ax, names[0], names[1], self.law.name)
         ax.plot(columns["time"], columns["measured"], ".", label="measured")
         ax.plot(columns["time"], columns["law"], label="law")
@@ -84,7 +86,7 @@ class Backbone(Table[BackbonePoint]):
 def fit(
     measurement: Measurement,
     *equations: str,
-    data: Literal["decay", "backbone", "impacts"] | None = None,
+    data: Literal["decay", "backbone", "response", "impacts"] | None = None,
     also: Sequence[str] | None = None,
     time: str | int | None = None,
     column: Sequence[str | int] | str | int | None = None,
@@ -102,7 +104,8 @@ def fit(
     Args:
         measurement: The path of a table of numbers, or its columns: times and values, arrays or lists.
         *equations: Equations whose letters are to be found; without one the laws of a list.
-        data: The content: a motion, frequencies against amplitudes, or times of impacts.
+        data: The content: a motion, frequencies against amplitudes, amplitudes against the frequency of a
+            drive, or times of impacts.
         also: Other files with records of the same thing.
         time: The column of time, by its name or its number from 1.
         column: The columns of values, by their names or numbers; several are records of the same thing.

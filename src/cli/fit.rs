@@ -7,9 +7,11 @@ use crate::fit::answer::{Answer as Decay, FitError, FitOptions, fit, fit_laws};
 use crate::fit::impacts::{ImpactAnswer, fit_impacts};
 use crate::fit::laws::Law;
 use crate::fit::motion::Quantity;
-use crate::fit::record::{ReadError, ReadOptions, ReadRecord, Record, read, read_columns};
+use crate::fit::record::{Column, ReadError, ReadOptions, ReadRecord, Record, read, read_columns};
+use crate::fit::response::{Response, ResponseFit, ResponseRow, fit_response};
 use crate::fit::tables::{TableAnswer, TableRow, fit_table};
 use crate::report::{self, FitReport};
+use crate::symbol::Symbol;
 use crate::values::Values;
 use clap::{Args, ValueEnum};
 
@@ -31,15 +33,17 @@ pub struct FitArguments {
     /// An equation whose letters are to be found, such as "x'' + c*x' + k*x + b*x^3 = 0"; repeatable,
     /// without it the laws of a list: springs and pendulum, each with every damping
     equation: Vec<String>,
-    /// The content of the file: times and values of a motion, frequencies (and damping ratios) against
-    /// amplitudes, or the times of impacts of a ball
+    /// The content of the file: times and values of a motion; frequencies (and damping ratios) against
+    /// amplitudes; amplitudes (and phases) against the frequency of a drive; or the times of impacts of a
+    /// ball
     #[arg(long, value_name = "KIND", default_value = "decay")]
     data: Kind,
     /// The column of time, by its name or its number from 1
     #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
     /// The column of values, by its name or its number from 1; several are records of the same thing, and
-    /// are fitted together; of a backbone those of amplitude, frequency and damping (repeatable)
+    /// are fitted together; of a backbone those of amplitude, frequency and damping, of a response those of
+    /// frequency, amplitude, phase, and letters of the equation (repeatable)
     #[arg(long, value_name = "COLUMN")]
     column: Vec<String>,
     /// The quantity that was measured
@@ -75,6 +79,7 @@ pub struct FitArguments {
 enum Kind {
     Decay,
     Backbone,
+    Response,
     Impacts,
 }
 
@@ -124,6 +129,10 @@ fn run(arguments: &FitArguments) -> Result<Outcome, Failure> {
             let (rows, answer) = backbone(arguments, &text)?;
             answered(&FitReport::Backbone { rows: &rows, answer: &answer }, &arguments.common)
         }
+        Kind::Response => {
+            let (response, fit) = response(arguments, &text)?;
+            answered(&FitReport::Response { response: &response, fit: &fit }, &arguments.common)
+        }
         Kind::Impacts => {
             let answer = impacts(arguments, &text)?;
             answered(&FitReport::Impacts(&answer), &arguments.common)
@@ -146,18 +155,19 @@ impl FitArguments {
     /// Refuses options without effect on this kind of measurement.
     fn check(&self) -> Result<(), Failure> {
         let is_decay = self.data == Kind::Decay;
+        let has_equation = is_decay || self.data == Kind::Response;
         let foreign = [
-            ("an equation", !self.equation.is_empty(), is_decay),
+            ("an equation", !self.equation.is_empty(), has_equation),
             ("--also", !self.also.is_empty(), is_decay),
             ("--time", self.time.is_some(), is_decay),
-            ("--start", !self.start.is_empty(), is_decay && !self.equation.is_empty()),
+            ("--start", !self.start.is_empty(), has_equation && !self.equation.is_empty()),
             ("--keep-outliers", self.keep_outliers, is_decay),
             ("--until", self.until.is_some(), is_decay),
-            ("--angle", self.angle, self.data != Kind::Impacts),
-            ("--noise", self.noise.is_some(), self.data != Kind::Backbone),
+            ("--angle", self.angle, matches!(self.data, Kind::Decay | Kind::Backbone)),
+            ("--noise", self.noise.is_some(), matches!(self.data, Kind::Decay | Kind::Impacts)),
         ];
         match foreign.iter().find(|(_, is_given, is_taken)| *is_given && !is_taken) {
-            Some((option, ..)) if *option == "--start" && is_decay => Err(Failure::Usage(
+            Some((option, ..)) if *option == "--start" && has_equation => Err(Failure::Usage(
                 "--start: it is of the letters of an equation: write the equation as well"
                     .to_owned(),
             )),
@@ -210,23 +220,38 @@ fn decay(arguments: &FitArguments, text: &str) -> Result<(Vec<ReadRecord>, Decay
     let start = exact_values(&arguments.start, Ok(Values::default()))?.unwrap_or_default();
     let mut laws = vec![];
     for text in &arguments.equation {
-        let law = Law::parse(text)
-            .map_err(|error| Failure::refused(&error, Some(error.help().to_owned())))?;
-        let values: Vec<Option<f64>> = law.parameters.iter().map(|name| start.get(*name)).collect();
-        let missing = values.iter().zip(&law.parameters).find(|(value, _)| value.is_none());
-        let values = match missing {
-            Some((_, name)) if !start.is_empty() => {
-                return Err(Failure::Usage(format!(
-                    "--start: a value for {name} of `{text}` is missing: give one for each letter"
-                )));
-            }
-            Some(_) => None,
-            None => Some(values.into_iter().flatten().collect()),
-        };
+        let law = law(text)?;
+        let values = start_of(&law, &start, &[])?;
         laws.push((law, values));
     }
     let answer = fit_laws(&records, &laws, &options).map_err(|error| unfitted(&error))?;
     Ok((read_records, answer))
+}
+
+/// The law of an equation.
+fn law(equation: &str) -> Result<Law, Failure> {
+    Law::parse(equation).map_err(|error| Failure::refused(&error, Some(error.help().to_owned())))
+}
+
+/// The first values of all letters of a law, zero of those that are `known`; `None` without any.
+///
+/// # Errors
+/// A letter without a value beside others that have one.
+fn start_of(law: &Law, start: &Values, known: &[Symbol]) -> Result<Option<Vec<f64>>, Failure> {
+    let value = |name: &Symbol| match known.contains(name) {
+        true => Some(0.0),
+        false => start.get(*name),
+    };
+    let values: Vec<Option<f64>> = law.parameters.iter().map(value).collect();
+    let missing = values.iter().zip(&law.parameters).find(|(value, _)| value.is_none());
+    match missing {
+        Some((_, name)) if !start.is_empty() => Err(Failure::Usage(format!(
+            "--start: a value for {name} of `{}` is missing: give one for each letter",
+            law.equation
+        ))),
+        Some(_) => Ok(None),
+        None => Ok(Some(values.into_iter().flatten().collect())),
+    }
 }
 
 /// The rows of a table of frequencies, and their laws.
@@ -237,9 +262,7 @@ fn backbone(arguments: &FitArguments, text: &str) -> Result<(Vec<TableRow>, Tabl
             "a backbone needs a column of amplitudes and one of frequencies".to_owned(),
         ));
     };
-    // Frequencies are taken as angular ones, unless the head says that they are cycles.
-    let is_in_cycles = frequency.name.to_lowercase().contains("hz");
-    let factor = if is_in_cycles { std::f64::consts::TAU } else { 1.0 };
+    let factor = to_angular(frequency);
     let rows = amplitude.values.iter().zip(&frequency.values).enumerate();
     let rows = rows.map(|(place, (amplitude, frequency))| TableRow {
         amplitude: *amplitude,
@@ -250,6 +273,53 @@ fn backbone(arguments: &FitArguments, text: &str) -> Result<(Vec<TableRow>, Tabl
     let answer = fit_table(&rows, arguments.angle)
         .map_err(|error| Failure::refused(&error, Some(error.help().to_owned())).of_kind(&error))?;
     Ok((rows, answer))
+}
+
+/// The factor from the frequencies of a column to angular ones, which they are unless the head says that they
+/// are cycles.
+fn to_angular(frequency: &Column) -> f64 {
+    let is_in_cycles = frequency.name.to_lowercase().contains("hz");
+    if is_in_cycles { std::f64::consts::TAU } else { 1.0 }
+}
+
+/// The frequency response of a table, and the law of an equation with a drive.
+fn response(arguments: &FitArguments, text: &str) -> Result<(Response, ResponseFit), Failure> {
+    /// The largest number of columns of a table.
+    const MOST: usize = 16;
+    let [equation] = arguments.equation.as_slice() else {
+        return Err(Failure::Usage(
+            "--data response: one equation with a drive is needed, such as \"x'' + c*x' + k*x + b*x^3 = F*cos(Omega*t)\""
+                .to_owned(),
+        ));
+    };
+    let law = law(equation)?;
+    let columns = read_columns(text, &arguments.column, MOST).map_err(|error| unread(&error))?;
+    let [frequency, amplitude, rest @ ..] = columns.as_slice() else {
+        return Err(Failure::because(
+            "a response needs a column of frequencies and one of amplitudes".to_owned(),
+        ));
+    };
+    let phase = rest.iter().find(|column| column.name.to_lowercase().starts_with("phase"));
+    let of_letter = |name: &Symbol| {
+        let column = rest.iter().find(|column| column.name == name.to_string());
+        column.map(|column| (*name, column.values.clone()))
+    };
+    let known: Vec<(Symbol, Vec<f64>)> = law.parameters.iter().filter_map(of_letter).collect();
+    let factor = to_angular(frequency);
+    let rows = frequency.values.iter().zip(&amplitude.values).enumerate();
+    let rows = rows.map(|(place, (frequency, amplitude))| ResponseRow {
+        frequency: factor * frequency,
+        amplitude: *amplitude,
+        phase: phase.and_then(|phase| phase.values.get(place).copied()),
+    });
+    let response = Response { rows: rows.collect(), known };
+    let start = exact_values(&arguments.start, Ok(Values::default()))?.unwrap_or_default();
+    let mut given: Vec<Symbol> = response.known.iter().map(|(name, _)| *name).collect();
+    given.extend(law.drive_frequency());
+    let start = start_of(&law, &start, &given)?.filter(|_| !start.is_empty());
+    let fit = fit_response(&law, &response, start.as_deref())
+        .map_err(|error| Failure::refused(&error, Some(error.help().to_owned())).of_kind(&error))?;
+    Ok((response, fit))
 }
 
 /// The laws of the impacts of a ball.

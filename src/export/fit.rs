@@ -9,6 +9,7 @@ use crate::fit::answer::{Answer, LawFit};
 use crate::fit::backbone::BackbonePoint;
 use crate::fit::fitted_record::FittedRecord;
 use crate::fit::impacts::MeasuredRestitution;
+use crate::fit::response::{Response, ResponseFit};
 use crate::fit::tables::{TableAnswer, TableRow};
 use crate::report::FitReport;
 
@@ -23,6 +24,7 @@ pub fn picture(report: &FitReport) -> Result<String, FigureError> {
     match report {
         FitReport::Decay { answer, until, .. } => of_decay(answer, &name, *until),
         FitReport::Backbone { rows, answer } => of_backbone(rows, answer, &name),
+        FitReport::Response { response, fit } => of_response(response, fit),
         FitReport::Impacts(answer) => {
             let measured: Points =
                 answer.measured.iter().map(|own| (own.speed, own.value)).collect();
@@ -70,6 +72,35 @@ fn of_backbone(rows: &[TableRow], answer: &TableAnswer, name: &str) -> Result<St
         panels.push(panel(title, ["amplitude", label], curves, vec![]));
     }
     figure(&panels, &format!("{name}."))
+}
+
+/// Amplitudes, and phases, of a frequency response with those of the law.
+fn of_response(response: &Response, fit: &ResponseFit) -> Result<String, FigureError> {
+    let rows = || response.rows.iter().zip(&fit.fitted);
+    let amplitudes: [Points; 2] = [
+        rows().map(|(row, _)| (row.frequency, row.amplitude)).collect(),
+        rows().map(|(row, [amplitude, _])| (row.frequency, *amplitude)).collect(),
+    ];
+    let phases: [Points; 2] = [
+        rows().filter_map(|(row, _)| Some((row.frequency, row.phase?))).collect(),
+        rows()
+            .filter(|(row, _)| row.phase.is_some())
+            .map(|(row, [_, phase])| (row.frequency, *phase))
+            .collect(),
+    ];
+    let titles = [("Amplitude", "amplitude"), ("Phase", "phase behind the drive's time")];
+    let mut panels = vec![];
+    for ((title, label), [measured, law]) in titles.into_iter().zip([&amplitudes, &phases]) {
+        if measured.is_empty() {
+            continue;
+        }
+        let curves = vec![
+            curve("measured", measured, CurveStyle::MARKED_POINTS),
+            curve("law", law, CurveStyle::DOTS),
+        ];
+        panels.push(panel(title, ["angular frequency of the drive", label], curves, vec![]));
+    }
+    figure(&panels, &format!("{}.", fit.law.equation))
 }
 
 /// The times at which the law is drawn over a record.
@@ -182,6 +213,20 @@ pub fn csv(report: &FitReport) -> String {
                     row.amplitude.to_string(),
                     row.frequency.to_string(),
                     csv::cell(row.damping),
+                ]);
+            }
+            text
+        }
+        FitReport::Response { response, fit } => {
+            let names = ["frequency", "amplitude", "phase", "law_amplitude", "law_phase"];
+            let mut text = csv::line(names);
+            for (row, [amplitude, phase]) in response.rows.iter().zip(&fit.fitted) {
+                text += &csv::line([
+                    row.frequency.to_string(),
+                    row.amplitude.to_string(),
+                    csv::cell(row.phase),
+                    amplitude.to_string(),
+                    phase.to_string(),
                 ]);
             }
             text

@@ -6,6 +6,7 @@ use crate::fit::answer::{Answer, Estimate, LawFit};
 use crate::fit::fitted_record::FittedRecord;
 use crate::fit::impacts::{ImpactAnswer, ImpactFit};
 use crate::fit::record::ReadRecord;
+use crate::fit::response::{Response, ResponseFit};
 use crate::fit::tables::{TableAnswer, TableFit, TableRow};
 
 /// A measurement, and what it says.
@@ -26,6 +27,13 @@ pub enum FitReport<'a> {
         rows: &'a [TableRow],
         /// The laws.
         answer: &'a TableAnswer,
+    },
+    /// Amplitude, and perhaps phase, against the frequency of a drive.
+    Response {
+        /// The rows.
+        response: &'a Response,
+        /// The law.
+        fit: &'a ResponseFit,
     },
     /// Times of the impacts of a body that bounces.
     Impacts(&'a ImpactAnswer),
@@ -69,6 +77,14 @@ impl FitReport<'_> {
                 let further = springs.into_iter().skip(usize::from(!answer.laws.is_empty()));
                 losses.into_iter().chain(further).collect()
             }
+            Self::Response { fit, .. } => vec![FittedLaw {
+                name: fit.law.name.clone(),
+                equation: fit.law.equation.clone(),
+                estimates: fit.estimates.clone(),
+                chi_squared: None,
+                aic: None,
+                excluded: None,
+            }],
             Self::Impacts(answer) => answer.laws.iter().map(of_impacts).collect(),
         }
     }
@@ -183,6 +199,7 @@ pub fn fit<'a>(report: &FitReport) -> Document<'a> {
     let mut sections = vec![match report {
         FitReport::Decay { records, answer, .. } => of_records(records, answer),
         FitReport::Backbone { rows, .. } => of_rows(rows),
+        FitReport::Response { response, .. } => of_response(response),
         FitReport::Impacts(answer) => vec![Block::Heading(format!(
             "{} impacts, their times good to {}",
             answer.measured.len() + 2,
@@ -202,6 +219,13 @@ pub fn fit<'a>(report: &FitReport) -> Document<'a> {
         }
         if let Some(fit) = report.best() {
             blocks.extend(of_best(fit));
+        }
+        if let FitReport::Response { fit, .. } = report {
+            let mut facts = vec![("scatter of the amplitudes", significant(fit.noise, 3))];
+            if !fit.converged {
+                facts.push(not_converged());
+            }
+            blocks.push(Block::Facts(facts));
         }
         if let FitReport::Backbone { answer, .. } = report {
             let worst = answer.laws.first().or(answer.springs.first());
@@ -384,19 +408,43 @@ fn of_record<'a>(read: &ReadRecord, found: &FittedRecord, noise: f64) -> Block<'
     Block::Facts(facts)
 }
 
+/// A search that ended without a minimum.
+fn not_converged() -> (&'static str, String) {
+    ("search", "it did not converge: the values are the best so far".to_owned())
+}
+
+/// The smallest and the largest of some values, in words.
+fn range_of(values: impl Iterator<Item = f64> + Clone) -> String {
+    let from = values.clone().fold(f64::INFINITY, f64::min);
+    let to = values.fold(0.0, f64::max);
+    format!("from {} to {}", significant(from, 4), significant(to, 4))
+}
+
 fn of_rows<'a>(rows: &[TableRow]) -> Vec<Block<'a>> {
-    let amplitudes = || rows.iter().map(|row| row.amplitude);
-    let from = amplitudes().fold(f64::INFINITY, f64::min);
-    let to = amplitudes().fold(0.0, f64::max);
-    vec![Block::Facts(vec![(
-        "table",
+    let amplitudes = range_of(rows.iter().map(|row| row.amplitude));
+    vec![Block::Facts(vec![("table", format!("{} rows, amplitudes {amplitudes}", rows.len()))])]
+}
+
+fn of_response<'a>(response: &Response) -> Vec<Block<'a>> {
+    let rows = &response.rows;
+    let [frequencies, amplitudes] = [
+        range_of(rows.iter().map(|row| row.frequency)),
+        range_of(rows.iter().map(|row| row.amplitude)),
+    ];
+    let phases = rows.iter().any(|row| row.phase.is_some());
+    let mut facts = vec![(
+        "response",
         format!(
-            "{} rows, amplitudes from {} to {}",
+            "{} rows{}, angular frequencies {frequencies}, amplitudes of the first harmonic {amplitudes}",
             rows.len(),
-            significant(from, 4),
-            significant(to, 4)
+            if phases { " with phases" } else { "" }
         ),
-    )])]
+    )];
+    if !response.known.is_empty() {
+        let names = response.known.iter().map(|(name, _)| name.to_string());
+        facts.push(("known", names.collect::<Vec<_>>().join(", ")));
+    }
+    vec![Block::Facts(facts)]
 }
 
 /// The remarks on the best law of a decay.
@@ -413,7 +461,7 @@ fn of_best<'a>(fit: &LawFit) -> Vec<Block<'a>> {
         facts.push(("correlation", format!("{} of {one} and {other}", significant(value, 3))));
     }
     if !fit.converged {
-        facts.push(("search", "it did not converge: the values are the best so far".to_owned()));
+        facts.push(not_converged());
     }
     let flat = fit.flat.iter().map(|direction| Block::Note(direction.clone()));
     std::iter::once(Block::Facts(facts)).chain(flat).collect()

@@ -211,6 +211,13 @@ fn documents() -> Vec<(String, Value)> {
     add(&[&laws[..], &["--error", "0.01", "--certificate"]].concat());
     add(&["fit", "examples/fit/pendulum.csv", "x'' + c*x' + d*sgn(x') + g*sin(x) = 0"]);
     add(&["fit", "examples/fit/backbone.csv", "--data", "backbone"]);
+    add(&[
+        "fit",
+        "examples/fit/response.csv",
+        "x'' + c*x' + k*x + b*x^3 = F*cos(Omega*t)",
+        "--data",
+        "response",
+    ]);
     add(&["fit", "examples/fit/impacts.csv", "--data", "impacts"]);
     add(&["paper"]);
     add(&["impact", "--compare"]);

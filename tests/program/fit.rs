@@ -58,6 +58,49 @@ fn a_pendulum_with_two_kinds_of_damping_is_found() {
     }
 }
 
+/// The response of a cubic spring, swept up and down: the sweeps are on different branches between the folds.
+#[test]
+fn a_driven_oscillator_is_found_from_its_frequency_response() {
+    let equation = "x'' + c*x' + k*x + b*x^3 = F*cos(Omega*t)";
+    let arguments = ["response.csv", equation, "--data", "response"];
+    let found = document(&arguments);
+    for (name, truth) in [("c", 0.1), ("k", 1.0), ("b", 0.5), ("F", 0.3)] {
+        let [value, error] = estimate(&found, name);
+        assert!((value - truth).abs() < 3.0 * error, "{name}: {value} +- {error}");
+        assert!(error < 0.02 * truth, "{name}: {value} +- {error}");
+    }
+    let rows = found["response"].as_array().expect("rows");
+    assert_eq!(rows.len(), 35);
+    for row in rows {
+        let number = |key: &str| row[key].as_f64().expect("a number");
+        assert!((number("amplitude") - number("law_amplitude")).abs() < 0.01, "{row}");
+    }
+    // The size of the drive as a column is known, and no longer found.
+    let text = std::fs::read_to_string(format!("{EXAMPLES}/response.csv")).expect("a file");
+    let with_drive = |line: &str| match line.starts_with('#') {
+        true => String::new(),
+        false if line.starts_with("Omega") => format!("{line},F\n"),
+        false => format!("{line},0.3\n"),
+    };
+    let path = file("levels.csv", &text.lines().map(with_drive).collect::<String>());
+    let known = document(&[path.to_str().expect("a path"), equation, "--data", "response"]);
+    assert!(known["laws"][0]["parameters"].get("F").is_none());
+    let [value, error] = estimate(&known, "c");
+    assert!(
+        (value - 0.1).abs() < 3.0 * error && error < estimate(&found, "c")[1],
+        "{value} +- {error}"
+    );
+    let refusal = |arguments: &[&str]| {
+        let output = run(arguments);
+        assert!(!output.status.success(), "{arguments:?}");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let without = refusal(&["response.csv", "--data", "response"]);
+    assert!(without.contains("one equation with a drive"), "{without}");
+    let free = refusal(&["response.csv", "x'' + c*x' + k*x = 0", "--data", "response"]);
+    assert!(free.contains("no drive"), "{free}");
+}
+
 #[test]
 fn a_fitted_law_is_a_problem_that_swings_as_the_record_does() {
     let problem = printed(&["pendulum.csv", "--format", "toml"]);

@@ -10,6 +10,7 @@ use crate::fit::answer::Estimate;
 use crate::fit::backbone::BackbonePoint;
 use crate::fit::fitted_record::FittedRecord;
 use crate::fit::record::ReadRecord;
+use crate::fit::response::ResponseRow;
 use crate::fit::turning_points::TurningPoint;
 use crate::report::FitReport;
 
@@ -20,7 +21,7 @@ pub struct FitDocument {
     /// The kind of document.
     pub schema: String,
     /// The kind of measurement: `decay`, a record of a motion, `backbone`, a table of frequencies against
-    /// amplitudes, or `impacts`, times of impacts.
+    /// amplitudes, `response`, amplitudes against the frequency of a drive, or `impacts`, times of impacts.
     pub data: String,
     /// The records before any law; empty of tables and impacts.
     pub records: Vec<RecordDocument>,
@@ -30,6 +31,8 @@ pub struct FitDocument {
     pub best: Option<BestLawDocument>,
     /// Frequency and damping against amplitude, without a law, record by record; empty of tables and impacts.
     pub backbone: Vec<BackbonePointDocument>,
+    /// The rows of a frequency response with its law; empty of everything else.
+    pub response: Vec<ResponseRowDocument>,
     /// The coefficient of restitution of each impact; empty of records and tables.
     pub impacts: Vec<RestitutionDocument>,
 }
@@ -137,6 +140,22 @@ pub struct BackbonePointDocument {
     pub damping: EstimateDocument,
 }
 
+/// A row of a frequency response: the first harmonic, `amplitude cos(frequency t - phase)`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "FittedResponseRow"))]
+pub struct ResponseRowDocument {
+    /// The angular frequency of the drive.
+    pub frequency: f64,
+    /// The measured amplitude.
+    pub amplitude: f64,
+    /// The measured phase, in radians; null where it is not given.
+    pub phase: Option<f64>,
+    /// The amplitude of the law.
+    pub law_amplitude: Option<f64>,
+    /// The phase of the law, in radians.
+    pub law_phase: Option<f64>,
+}
+
 /// The coefficient of restitution of one impact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "Restitution"))]
@@ -169,7 +188,8 @@ pub fn fit(report: &FitReport) -> FitDocument {
         aic: finite(law.aic),
         excluded: law.excluded,
     });
-    let (mut records, mut backbone, mut impacts) = (vec![], vec![], vec![]);
+    let (mut records, mut backbone) = (vec![], vec![]);
+    let (mut response, mut impacts) = (vec![], vec![]);
     let data = match report {
         FitReport::Decay { records: read, answer, .. } => {
             let found = &answer.records;
@@ -182,6 +202,18 @@ pub fn fit(report: &FitReport) -> FitDocument {
             "decay"
         }
         FitReport::Backbone { .. } => "backbone",
+        FitReport::Response { response: measured, fit } => {
+            let rows = measured.rows.iter().zip(&fit.fitted);
+            let row = |(row, [amplitude, phase]): (&ResponseRow, &[f64; 2])| ResponseRowDocument {
+                frequency: row.frequency,
+                amplitude: row.amplitude,
+                phase: row.phase,
+                law_amplitude: finite(Some(*amplitude)),
+                law_phase: finite(Some(*phase)),
+            };
+            response = rows.map(row).collect();
+            "response"
+        }
         FitReport::Impacts(answer) => {
             let measured = answer.measured.iter().map(|own| RestitutionDocument {
                 speed: own.speed,
@@ -211,6 +243,7 @@ pub fn fit(report: &FitReport) -> FitDocument {
         laws: laws.collect(),
         best,
         backbone,
+        response,
         impacts,
     }
 }

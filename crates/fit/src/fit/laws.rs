@@ -10,7 +10,7 @@
 
 use thiserror::Error;
 
-use crate::expr::{Equation, Expr, parse_equation};
+use crate::expr::{Equation, Expr, Function, Node, parse_equation};
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::symbol::Symbol;
 
@@ -255,6 +255,23 @@ impl Law {
     /// Whether the equation contains the time.
     pub fn is_driven(&self) -> bool {
         self.acceleration.contains(Symbol::new("t"))
+    }
+
+    /// The parameter that multiplies the time in every sine and cosine of it, `Omega` of
+    /// `cos(Omega*t)`; `None` where there is no such parameter, or several.
+    pub fn drive_frequency(&self) -> Option<Symbol> {
+        let time = Symbol::new("t");
+        let angle = |node: &Expr| match node.node() {
+            Node::Function(Function::Sin | Function::Cos, own) if own[0].contains(time) => {
+                Some(own[0].clone())
+            }
+            _ => None,
+        };
+        let rate = |angle: Expr| angle.differentiate(time).ok()?.as_symbol();
+        let mut rates = self.acceleration.unique_nodes().filter_map(angle).map(rate);
+        let first = rates.next()??;
+        let is_only = rates.all(|own| own == Some(first));
+        (is_only && self.parameters.contains(&first)).then_some(first)
     }
 
     /// All laws of the list: every spring with every loss. The pendulum is among them for angles alone.

@@ -24,6 +24,7 @@
 //! - `answer`: the laws of records, ordered, with what is excluded: [`answer::fit`]
 //! - `impacts`: restitution from times of impacts: [`impacts::fit_impacts`]
 //! - `tables`: laws of tables of frequencies: [`tables::fit_table`]
+//! - `response`: laws of driven oscillators from their amplitude against frequency: [`response::fit_response`]
 
 pub mod answer;
 pub mod backbone;
@@ -41,6 +42,7 @@ mod polynomial;
 mod powers;
 pub mod quality;
 pub mod record;
+pub mod response;
 pub mod sample_fit;
 mod spikes;
 pub mod tables;

@@ -65,6 +65,15 @@ pub enum Quantity {
     Acceleration,
 }
 
+/// The columns of a sampled motion.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Columns {
+    /// One quantity with its derivatives.
+    Of(Quantity),
+    /// The coordinate with its derivatives, then the velocity with its own.
+    OfPhase,
+}
+
 /// A motion at the times of a record.
 #[derive(Clone, Debug, Default)]
 pub struct SampledMotion {
@@ -126,6 +135,31 @@ impl MotionSolver {
         half_period: f64,
         quantity: Quantity,
     ) -> Option<SampledMotion> {
+        self.follow(parameters, start, times, half_period, Columns::Of(quantity))
+    }
+
+    /// Coordinate and velocity at the same times, each with its derivatives, as of [`Self::sample`].
+    pub(crate) fn sample_phase(
+        &self,
+        parameters: &[f64],
+        start: [f64; 2],
+        times: &[f64],
+        half_period: f64,
+    ) -> Option<[Vec<Vec<f64>>; 2]> {
+        let motion = self.follow(parameters, start, times, half_period, Columns::OfPhase)?;
+        let mut coordinates = motion.columns;
+        let velocities = coordinates.split_off(coordinates.len() / 2);
+        Some([coordinates, velocities])
+    }
+
+    fn follow(
+        &self,
+        parameters: &[f64],
+        start: [f64; 2],
+        times: &[f64],
+        half_period: f64,
+        wanted: Columns,
+    ) -> Option<SampledMotion> {
         let count = self.names.len() + 3;
         let (&first, &last) = (times.first()?, times.last()?);
         let finite = parameters.iter().chain(&start).all(|value| value.is_finite());
@@ -136,7 +170,8 @@ impl MotionSolver {
         let mut state = vec![0.0; 2 * count];
         (state[0], state[count]) = (start[0], start[1]);
         (state[count - 2], state[2 * count - 1]) = (1.0, 1.0);
-        let kept_states = if quantity == Quantity::Displacement { count } else { 2 * count };
+        let is_displacement = wanted == Columns::Of(Quantity::Displacement);
+        let kept_states = if is_displacement { count } else { 2 * count };
         let mut motion = SampledMotion::default();
         let mut columns = vec![Vec::with_capacity(times.len()); kept_states];
         let mut accelerations = vec![Vec::with_capacity(times.len()); count];
@@ -201,7 +236,7 @@ impl MotionSolver {
             let from = columns[0].len();
             path.sample(&times[next..], &mut kept, &mut columns);
             next += kept.len();
-            if quantity == Quantity::Acceleration {
+            if wanted == Columns::Of(Quantity::Acceleration) {
                 for (place, time) in (from..).zip(&kept) {
                     self.set_point_of(
                         &mut arguments,
@@ -231,16 +266,14 @@ impl MotionSolver {
                 return None;
             }
         }
-        let mut columns: Vec<Vec<f64>> = match quantity {
-            Quantity::Displacement => columns,
-            Quantity::Velocity => columns.split_off(count),
-            Quantity::Acceleration => accelerations,
+        let mut columns: Vec<Vec<f64>> = match wanted {
+            Columns::Of(Quantity::Displacement) | Columns::OfPhase => columns,
+            Columns::Of(Quantity::Velocity) => columns.split_off(count),
+            Columns::Of(Quantity::Acceleration) => accelerations,
         };
+        let has_coordinate = is_displacement || wanted == Columns::OfPhase;
         for (index, column) in columns.iter_mut().enumerate() {
-            let at_rest = match quantity {
-                Quantity::Displacement => state[index],
-                Quantity::Velocity | Quantity::Acceleration => 0.0,
-            };
+            let at_rest = if has_coordinate && index < count { state[index] } else { 0.0 };
             column.resize(times.len(), at_rest);
         }
         motion.columns = columns;

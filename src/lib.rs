@@ -39,6 +39,7 @@
 //! | [`hill`] | says where rest is stable under periodic coefficients: transition curves, multipliers | [`hill::transition_curves`] |
 //! | [`coupled`] | reads coupled equations of motion of any number of coordinates | [`coupled::CoupledEquations`] |
 //! | [`wall`] | reads rigid walls with a coefficient of restitution | [`wall::Wall`] |
+//! | [`contact`] | writes walls that give way as forces in the equations | [`contact::CompliantContact`] |
 //! | [`mechanics`] | makes equations of motion from energies; units, dimensionless groups, modes | [`mechanics::Mechanism`] |
 //! | [`impact`] | a pendulum that hits an elastic barrier: three phases in closed form, or event by event | [`impact::solve`], [`impact::simulate`](impact::simulate()) |
 //! | [`optimize`] | searches the damper that rests soonest: constraints, fronts, what decides | [`optimize::optimize`](optimize::optimize()) |
@@ -73,7 +74,7 @@
 #![warn(missing_docs)]
 
 #[doc(inline)]
-pub use lindstedt_dynamics::{coupled, mechanics, system, wall};
+pub use lindstedt_dynamics::{contact, coupled, mechanics, system, wall};
 #[doc(inline)]
 pub use lindstedt_expr::{exact, expr};
 #[doc(inline)]

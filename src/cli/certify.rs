@@ -25,7 +25,7 @@ use super::answer::{Answer, no_such};
 use super::derive::{self, EquationArguments, Solved, exact_values};
 use super::files::width;
 use super::modes::{self, Derived};
-use super::problem::{coupled_equations, problem};
+use super::problem::coupled_equations;
 use super::progress::with_progress;
 use super::session;
 use super::{Common, Failure, Format, Outcome, Work, json_text, read_at_most, tolerance};
@@ -94,7 +94,7 @@ impl Work for CertifyArguments {
 
 fn run(arguments: &CertifyArguments) -> Result<Outcome, Failure> {
     without_picture(&arguments.common)?;
-    let problem = problem(&arguments.question.problem)?;
+    let problem = arguments.question.problem()?;
     if let Some(equations) = coupled_equations(&problem, ReadingCommand::Derive)? {
         let driven = equations.rates.right.iter().any(|rate| rate.contains(Symbol::new("t")));
         let is_one = driven || is_of_cycle(arguments, &equations, &problem)?;

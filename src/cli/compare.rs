@@ -13,6 +13,7 @@ use clap::Args;
 use super::answer::{Answer, no_such};
 use super::derive::{Numbered, formula, named, notes_on_letters, oscillator, with_values};
 use super::problem::problem;
+use super::walls::ContactArguments;
 use super::{Common, Failure, Format, Outcome, Work, files, json_text, tolerance, values_of};
 
 /// Every method of the field on one equation, in one table, judged against the true motion
@@ -20,6 +21,8 @@ use super::{Common, Failure, Format, Outcome, Work, files, json_text, tolerance,
 pub struct CompareArguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     pub problem: String,
+    #[command(flatten)]
+    contacts: ContactArguments,
     /// A value, exact (1.5, 3/2, pi/3): where the methods are compared; repeatable
     #[arg(long, value_name = "NAME=VALUE,...")]
     at: Vec<String>,
@@ -49,7 +52,7 @@ impl Work for CompareArguments {
 }
 
 fn run(arguments: &CompareArguments) -> Result<Outcome, Failure> {
-    let problem = problem(&arguments.problem)?;
+    let problem = arguments.contacts.on(problem(&arguments.problem)?)?;
     let formula = formula(&problem, ReadingCommand::Compare)?;
     let oscillator = named(&oscillator(&formula, arguments.about.as_deref())?)?;
     let letters = oscillator.letters();

@@ -24,6 +24,7 @@ use super::files::width;
 use super::problem::{coupled_equations, expression, problem, value_name};
 use super::progress::with_progress;
 use super::session::{self, Session};
+use super::walls::ContactArguments;
 use super::{
     Common, Failure, Format, Outcome, Work, in_flags, json_text, text_writer, tolerance, values_of,
 };
@@ -33,6 +34,8 @@ use super::{
 pub struct EquationArguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     pub problem: String,
+    #[command(flatten)]
+    contacts: ContactArguments,
     /// How to derive: lindstedt-poincare, homotopy-perturbation, homotopy-analysis,
     /// iteration-perturbation, parameter-expansion, harmonic-balance, energy-balance, max-min,
     /// amplitude-frequency, hamiltonian, variational-iteration, frequency-formula, averaging, pade,
@@ -97,6 +100,14 @@ pub struct DeriveArguments {
 }
 
 impl EquationArguments {
+    /// Reads the problem, with its contacts.
+    ///
+    /// # Errors
+    /// A PROBLEM or a contact that cannot be read.
+    pub(super) fn problem(&self) -> Result<Problem, Failure> {
+        self.contacts.on(problem(&self.problem)?)
+    }
+
     /// Refuses options that the modes of coupled equations do not have.
     pub(super) fn check_of_modes(&self) -> Result<(), Failure> {
         let of_slow_equations =
@@ -296,7 +307,7 @@ impl Work for DeriveArguments {
 }
 
 fn run(arguments: &DeriveArguments) -> Result<Outcome, Failure> {
-    let problem = problem(&arguments.question.problem)?;
+    let problem = arguments.question.problem()?;
     if let Some(equations) = coupled_equations(&problem, ReadingCommand::Derive)? {
         if super::slow_equations::is_asked(arguments, &equations, &problem) {
             return super::slow_equations::run(arguments, equations, &problem);

@@ -22,7 +22,7 @@ use super::derive::{exact_values, formula, refused as refused_term};
 use super::problem::{coupled_equations, expression, problem};
 use super::progress::with_progress;
 use super::session;
-use super::walls::WallArguments;
+use super::walls::{ContactArguments, WallArguments};
 use super::{Common, Failure, Format, Outcome, Work, files, json_text, tolerance, values_of};
 
 /// Steady states of driven, self-excited or free oscillators, of one coordinate or coupled: every
@@ -61,6 +61,8 @@ pub struct ResponseArguments {
     #[command(flatten)]
     walls: WallArguments,
     #[command(flatten)]
+    contacts: ContactArguments,
+    #[command(flatten)]
     pub common: Common,
 }
 
@@ -79,7 +81,7 @@ impl Work for ResponseArguments {
 }
 
 fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
-    let problem = problem(&arguments.problem)?;
+    let problem = arguments.contacts.on(problem(&arguments.problem)?)?;
     let equations = equations(&problem)?;
     let method = method(arguments.method.as_deref().or(problem.method.as_deref()))?;
     if method == Method::Averaging && equations.oscillator().is_none() {

@@ -25,6 +25,7 @@ use super::files::width;
 use super::modes::{free_system, refused};
 use super::problem::{coupled_equations, expression, problem};
 use super::progress::with_progress;
+use super::walls::ContactArguments;
 use super::{Common, Failure, Format, Outcome, Work, json_text, session};
 
 /// The shortest frequency law within an error on a whole range, with a proof of the bound, and the
@@ -34,6 +35,8 @@ use super::{Common, Failure, Format, Outcome, Work, json_text, session};
 pub struct ShortestArguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     problem: String,
+    #[command(flatten)]
+    contacts: ContactArguments,
     /// What varies, and from where to where: the amplitude (A=0:2.8), a parameter (mu=0:10), or a
     /// product on which the frequency alone depends (eps*A^2=0:inf)
     #[arg(long, value_name = "NAME=FROM:TO", allow_hyphen_values = true)]
@@ -145,7 +148,7 @@ type Range = (Expr, Rational, Option<Rational>);
 
 /// The laws by length.
 fn front(arguments: &ShortestArguments) -> Result<Front, Failure> {
-    let problem = problem(&arguments.problem)?;
+    let problem = arguments.contacts.on(problem(&arguments.problem)?)?;
     let range = range(&arguments.range)?;
     let is_contact = quantity(arguments) == LawQuantity::ContactTime;
     if let Some(equations) = coupled_equations(&problem, ReadingCommand::Shortest)? {

@@ -28,7 +28,7 @@ use super::progress::{MOTIONS, PartsBar};
 use super::session;
 use super::shard::{self, Points, ShardArguments};
 use super::trajectory;
-use super::walls::WallArguments;
+use super::walls::{ContactArguments, WallArguments};
 use super::{Common, Failure, Format, Outcome, Work, json_text, text_writer};
 
 /// The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time; or any
@@ -53,6 +53,8 @@ pub struct SimulateArguments {
     pub(super) at: Vec<String>,
     #[command(flatten)]
     pub(super) walls: WallArguments,
+    #[command(flatten)]
+    contacts: ContactArguments,
     /// Look at an equation or a mechanism of one's own once in this time (Poincaré's section):
     /// 2*pi/Omega
     #[arg(long, value_name = "PERIOD", conflicts_with = "section")]
@@ -140,7 +142,7 @@ fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
     }
     let problem = match &arguments.problem {
         None => Problem::default(),
-        Some(text) => problem(text)?,
+        Some(text) => arguments.contacts.on(problem(text)?)?,
     };
     if problem.equation.is_some() || problem.lagrangian.is_some() {
         return run_equation(arguments, &problem);
@@ -152,6 +154,7 @@ fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
         ("--at", !arguments.at.is_empty(), "the keys of a file"),
         ("--wall", !arguments.walls.wall.is_empty(), "barrier in [pendulum]"),
         ("--restitution", !arguments.walls.restitution.is_empty(), "restitution in [contact]"),
+        ("--contact", !arguments.contacts.contact.is_empty(), "[contact]"),
         ("--every", arguments.every.is_some(), "--sample"),
         ("--section", arguments.section.is_some(), "--sample"),
         ("--lyapunov", arguments.lyapunov, "--sample"),

@@ -1,9 +1,10 @@
-//! `--wall` and `--restitution`: rigid walls of the command line or of a file.
+//! `--wall` and `--restitution`: rigid walls of the command line or of a file; `--contact`: walls that
+//! give way.
 
 use clap::Args;
 
 use crate::expr::{Expr, expression_in_grammar};
-use crate::problem::Problem;
+use crate::problem::{Problem, WallSection};
 use crate::wall::Wall;
 
 use super::Failure;
@@ -76,5 +77,41 @@ impl WallArguments {
             }
         }
         Ok(walls)
+    }
+}
+
+/// The option of a command that takes walls that give way.
+#[derive(Args, Clone, Default)]
+pub(super) struct ContactArguments {
+    /// A wall that gives way, and its law: hertz, hunt-crossley, kelvin-voigt, kelvin-voigt-no-pull or
+    /// step ("x < 1: hunt-crossley K=1e5 restitution=0.8 speed=2"); repeatable
+    #[arg(long, value_name = "x < d: LAW K=...", allow_hyphen_values = true)]
+    pub(super) contact: Vec<String>,
+}
+
+impl ContactArguments {
+    /// The problem with the forces of these contacts in its equations.
+    ///
+    /// # Errors
+    /// A text that is no contact, or a problem without equations.
+    pub(super) fn on(&self, problem: Problem) -> Result<Problem, Failure> {
+        if self.contact.is_empty() {
+            return Ok(problem);
+        }
+        let wall = |text: &String| {
+            let parts = text.split_once(':').map(|(bound, law)| (bound.trim(), law.trim()));
+            let (bound, law) = parts.ok_or_else(|| {
+                Failure::Usage(format!(
+                    "--contact \"{text}\": a bound, a colon and a law are expected, such as \"x < 1: hertz K=1e5\""
+                ))
+            })?;
+            Ok(WallSection {
+                bound: bound.to_owned(),
+                restitution: None,
+                contact: Some(law.to_owned()),
+            })
+        };
+        let walls = self.contact.iter().map(wall).collect::<Result<_, Failure>>()?;
+        problem.with_walls(walls).map_err(|error| Failure::refused(&error, error.help()))
     }
 }

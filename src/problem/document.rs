@@ -66,7 +66,7 @@ pub struct Problem {
     pub units: BTreeMap<String, String>,
     /// The materials of a study, or those a search chooses from.
     pub material: Vec<MaterialSection>,
-    /// Rigid walls.
+    /// Walls; those that give way are terms of the equations once the file is read.
     pub wall: Vec<WallSection>,
     /// The variables of a search for the best design, and its limits.
     pub limits: LimitsSection,
@@ -223,14 +223,16 @@ pub struct MaterialSection {
     pub damping: Option<f64>,
 }
 
-/// `[[wall]]`: a rigid wall.
+/// `[[wall]]`: a wall, rigid or with a law of contact.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WallSection {
     /// The side on which motions are allowed: `"x < d"`.
     pub bound: String,
-    /// The coefficient of restitution: a number, or text such as `"e"`.
+    /// The coefficient of restitution of a rigid wall: a number, or text such as `"e"`.
     pub restitution: Option<toml::Value>,
+    /// The law of a wall that gives way and its quantities: `"hertz K=1e5"`.
+    pub contact: Option<String>,
 }
 
 /// `[limits]`: what a search for the best design may vary between, in SI units, and what it must

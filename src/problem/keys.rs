@@ -97,6 +97,7 @@ fn readers(section: &str, key: &str) -> &'static [ReadingCommand] {
         ("run", "step_limit") => &[Impact, Simulate, Materials, Trajectory, Optimize],
         ("", "[[material]]") => &[Materials, Optimize],
         ("", "[[wall]]") => &[Trajectory, Response, Orbits],
+        ("", "[[wall]] contact") => &[Derive, Compare, Lagrange, Trajectory, Response, Shortest],
         ("limits" | "genetic", _) => &[Optimize],
         _ => &[Impact, Simulate, Materials, Optimize],
     }
@@ -134,7 +135,7 @@ const SECTIONS: [KeySection; 15] = [
     ("sphere", keys_of::<SphereSection>),
     ("barrier", keys_of::<BarrierSection>),
     ("run", keys_of::<Run>),
-    ("", || &["[[material]]", "[[wall]]"]),
+    ("", || &["[[material]]", "[[wall]]", "[[wall]] contact"]),
     ("limits", keys_of::<LimitsSection>),
     ("genetic", keys_of::<GeneticSection>),
 ];
@@ -194,9 +195,18 @@ pub(super) fn given(file: &toml::Table) -> Vec<String> {
             toml::Value::Table(_) if name == "values" || name == "units" => {
                 keys.push(format!("[{name}]"))
             }
-            toml::Value::Array(_) if ["material", "wall"].contains(&name.as_str()) => {
-                keys.push(format!("[[{name}]]"))
+            toml::Value::Array(walls) if name == "wall" => {
+                let is_compliant = |wall: &&toml::Value| wall.get("contact").is_some();
+                let compliant = walls.iter().filter(is_compliant).count();
+                // Walls that give way are terms of the equations.
+                if compliant > 0 {
+                    keys.push("[[wall]] contact".to_owned());
+                }
+                if compliant < walls.len() {
+                    keys.push("[[wall]]".to_owned());
+                }
             }
+            toml::Value::Array(_) if name == "material" => keys.push("[[material]]".to_owned()),
             toml::Value::Table(section) => {
                 keys.extend(section.keys().map(|key| format!("[{name}] {key}")))
             }
@@ -271,6 +281,6 @@ mod tests {
             let section = format!("[{name}]");
             assert!(known.iter().any(|key| key == name || key.contains(&section)), "{name}");
         }
-        assert_eq!(known.len(), 99);
+        assert_eq!(known.len(), 100);
     }
 }

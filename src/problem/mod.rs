@@ -16,6 +16,7 @@
 //!   equation is derived at once, and every command that reads an equation reads that one; of
 //!   several the equations are [`Problem::coupled_equations`], for `response`.
 
+mod contact;
 mod design;
 mod document;
 mod formula;
@@ -128,7 +129,7 @@ impl FromStr for Problem {
         let problem: Self =
             toml::from_str(text).map_err(|error| mistakes::in_words(text, &error))?;
         let given = toml::from_str(text).map_or_else(|_| Vec::new(), |file| keys::given(&file));
-        Self { given, ..problem }.with_derived_equation()
+        Self { given, ..problem }.with_contact_forces()?.with_derived_equation()
     }
 }
 

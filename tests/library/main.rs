@@ -4,6 +4,7 @@
 mod absorber;
 mod averaging;
 mod certificate;
+mod compliant_walls;
 mod conformance;
 mod contact;
 mod corner_roots;

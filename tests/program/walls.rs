@@ -32,11 +32,13 @@ fn refusal(arguments: &[&str]) -> String {
 }
 
 /// The command in the comment of each example.
-const EXAMPLES: [&[&str]; 4] = [
+const EXAMPLES: [&[&str]; 6] = [
     &["simulate", "examples/walls/bouncing-ball.toml", "--from", "x=1", "--until", "6"],
     &["simulate", "examples/walls/newtons-cradle.toml", "--from", "p=-1", "--until", "13"],
     &["simulate", "examples/walls/impact-damper.toml", "--from", "x=-1.5", "--until", "30"],
     &["simulate", "examples/walls/rattling-gear.toml", "--from", "z=0", "--until", "50"],
+    &["simulate", "examples/walls/soft-collision.toml", "--from", "x=-1", "--until", "20"],
+    &["simulate", "examples/walls/soft-stop.toml", "--from", "phi=-1", "--until", "20"],
 ];
 
 #[test]

@@ -24,5 +24,7 @@ pub mod coupled;
 
 pub mod wall;
 
+pub mod contact;
+
 pub use interrupt::{Interrupt, Progress};
 pub use symbol::Symbol;

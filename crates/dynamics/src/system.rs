@@ -24,6 +24,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod corner_powers;
 mod expansion;
 mod narrow;
 mod polynomial;
@@ -43,6 +44,7 @@ use crate::numeric::ode::root::{BisectionStop, bisect};
 use crate::series::recurrence::RecurrenceError;
 use crate::symbol::Symbol;
 
+pub use corner_powers::roots_across_corners;
 pub use taylor::LANES;
 pub use variations::Variations;
 
@@ -523,16 +525,21 @@ impl System {
         if state.len() != right.len() {
             return Err(SystemError::Length { states: state.len(), right_sides: right.len() });
         }
+        let right: Vec<Expr> = right
+            .iter()
+            .map(|right| roots_across_corners(right, numbers))
+            .collect::<Result<_, _>>()?;
         if let Some(part) = right.iter().find_map(jump_in_corner) {
             return Err(SystemError::JumpInCorner(part));
         }
+        let guards = narrow::guards_in(&right, numbers);
         let system = Self {
             state: state.to_vec(),
             time,
-            right: right.to_vec(),
+            narrow: narrow::arguments(&right, state, &guards, numbers),
+            right,
             numbers: numbers.clone(),
             critical: vec![],
-            narrow: narrow::arguments(right, state, &narrow::guards_in(right, numbers), numbers),
         };
         expansion::check(&system, &[])?;
         Ok(system)

@@ -17,7 +17,6 @@ mod hold;
 mod prepared;
 mod pulse;
 mod resting;
-mod root;
 mod section;
 mod sensitivity;
 mod surplus;
@@ -38,7 +37,8 @@ use crate::mechanics::{EquationsOfMotion, MechanicsError, Mechanism, Rates};
 use crate::oscillator::Oscillator;
 use crate::symbol::{Symbol, fresh};
 use crate::system::{
-    Event, Integrator, Path, PathEnd, Solver, System, SystemError, SystemOptions, solve_together,
+    Event, Integrator, Path, PathEnd, Solver, System, SystemError, SystemOptions,
+    roots_across_corners, solve_together,
 };
 
 use crate::wall::{Wall, WallError};
@@ -50,7 +50,6 @@ pub use sweep::{SweptMotion, sweep};
 
 use hold::Layout;
 use resting::resting_equations;
-pub(crate) use root::roots_across_corners;
 use section::OnSection;
 pub(crate) use surplus::of_one_size as shares_of_one_size;
 pub(crate) use two_sided::by_sides;

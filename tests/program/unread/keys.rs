@@ -14,7 +14,7 @@ const MECHANISM: &str =
 const MAIN_MASS: &str = "[pendulum]\nstart = 0.25\n[primary]\nmass = 0.5\nstiffness = 50\n";
 
 /// A key, a line that gives it, and what stands beside it.
-const LINES: [(&str, &str, &str); 99] = [
+const LINES: [(&str, &str, &str); 100] = [
     ("equation", "equation = \"x'' + sin(x) = 0\"", ""),
     ("method", "method = \"harmonic-balance\"", FORMULA),
     ("order", "order = 1", FORMULA),
@@ -90,6 +90,7 @@ const LINES: [(&str, &str, &str); 99] = [
     ("[run] step_limit", "[run]\nstep_limit = 3", ""),
     ("[[material]]", "[[material]]\nname = \"Cork\"\nmodulus = 2e7", ""),
     ("[[wall]]", "[[wall]]\nbound = \"x < 9\"\nrestitution = 1", FORMULA),
+    ("[[wall]] contact", "[[wall]]\nbound = \"x < 9\"\ncontact = \"hertz K=1\"", FORMULA),
     ("[limits] mass", "[limits]\nmass = [0.02, 0.05]", ""),
     ("[limits] radius", "[limits]\nradius = [0.002, 0.01]", ""),
     ("[limits] length", "[limits]\nlength = [0.05, 0.2]", ""),

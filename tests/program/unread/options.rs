@@ -55,6 +55,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
     // Command, what stands beside the option, the option.
     let table: Vec<(&str, Vec<&str>, Vec<&str>)> = vec![
         ("derive", vec![cubic], vec!["--method", "energy-balance"]),
+        ("derive", vec![cubic], vec!["--contact", "x < 1: hertz K=1"]),
         ("derive", vec![cubic], vec!["--order", "1"]),
         ("derive", vec![cubic], vec!["--amplitude", "first-harmonic"]),
         ("derive", vec![cubic], vec!["--small", "A"]),
@@ -92,6 +93,11 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("derive", vec!["pendulum"], vec!["--jobs", "0"]),
         ("derive", vec!["pendulum"], vec!["--quiet"]),
         ("compare", vec![cubic, "--at", "eps=1"], vec!["--at", "A=1"]),
+        (
+            "compare",
+            vec!["pendulum", "--at", "A=1"],
+            vec!["--contact", "x < 1/2: kelvin-voigt K=1 c=0"],
+        ),
         (
             "compare",
             vec![cubic, "--at", "eps=1", "--at", "A=1", "--format", "json"],
@@ -161,6 +167,8 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("simulate", own[1..].to_vec(), vec!["--section", "x'"]),
         ("simulate", own[1..].to_vec(), vec!["--wall", "x > 0", "--restitution", "1/2"]),
         ("simulate", own[1..].to_vec(), vec!["--restitution", "1/2"]),
+        ("simulate", own[1..].to_vec(), vec!["--contact", "x < 1/2: hertz K=1"]),
+        ("simulate", vec![], vec!["--contact", "x < 1/2: hertz K=1"]),
         ("simulate", own[1..].to_vec(), vec!["--lyapunov"]),
         ("simulate", vec![], vec!["--wall", "x > 0"]),
         ("simulate", own[1..].to_vec(), vec!["--after", "10"]),
@@ -289,6 +297,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("response", driven[1..].to_vec(), vec!["--along", "F=0.1:0.3"]),
         ("response", driven[1..].to_vec(), vec!["--wall", "x < 9", "--restitution", "1/2"]),
         ("response", driven[1..].to_vec(), vec!["--restitution", "1/2"]),
+        ("response", driven[1..].to_vec(), vec!["--contact", "x < 9: hertz K=1"]),
         ("response", driven[1..].to_vec(), vec!["--format", "csv"]),
         ("response", driven[1..].to_vec(), vec!["--format", "latex"]),
         ("response", driven[1..].to_vec(), vec!["--output", file]),

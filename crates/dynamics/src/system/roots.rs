@@ -354,7 +354,7 @@ mod tests {
     use crate::numeric::ode::quadrature::integrate_smooth;
     use crate::system::{Integrator, Path, PathEnd, SystemOptions, solve_together};
 
-    const CONTACT: [(&str, &str); 2] = [("x", "v"), ("v", "-k*(x^2)^(3/4)*H(x)")];
+    const CONTACT: [(&str, &str); 2] = [("x", "v"), ("v", "-k*max(x, 0)^(3/2)")];
 
     fn path(equations: &[(&str, &str)], numbers: &[(&str, f64)], start: &[f64], end: f64) -> Path {
         let system = System::parse(equations, numbers).expect("a system");

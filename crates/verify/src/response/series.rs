@@ -26,7 +26,6 @@ use crate::numeric::orbit_branch::PeriodImage;
 use crate::oscillator::Oscillator;
 use crate::symbol::Symbol;
 use crate::system::{Event, Path, PathEnd, Solver, System, SystemOptions, Variations};
-use crate::trajectory::roots_across_corners;
 
 /// A value of the parameter with which nothing cancels; every motion has its own.
 pub(super) const ANY: f64 = 0.618_034;
@@ -81,10 +80,7 @@ fn solver_until(
     /// Relative error of a step, below any that a judge asks for.
     const TOLERANCE: f64 = 1e-13;
     const STEPS: usize = 4_000;
-    let numbers = [parameter].into();
-    let right = right.iter().map(|rate| roots_across_corners(rate, &numbers));
-    let right: Vec<Expr> = right.collect::<Result<_, _>>().ok()?;
-    let system = System::new(states, time, &right, &numbers).ok()?;
+    let system = System::new(states, time, right, &[parameter].into()).ok()?;
     let options =
         SystemOptions { tolerance: TOLERANCE, step_limit: STEPS, ..SystemOptions::default() };
     Some(system.solver(events, &options))

@@ -32,7 +32,7 @@ use spec_math::cephes64::log1pmx;
 use super::super::hertz::positive;
 use super::super::lanes::{Lanes, Mask};
 use super::time::{LegendrePanel, expand, invert, length};
-use super::{ContactError, in_range, within};
+use super::{ContactError, in_range, not_negative, within};
 use crate::numeric::ode::root::find_root;
 
 /// One contact by d'' = -gamma d^n (1 + lambda d'), touched with speed v. Made by
@@ -471,13 +471,6 @@ impl PhasePlaneMotion {
         let sigma = if self.x == 0.0 { 0.0 } else { find_root(late, 0.0, 1.0).unwrap_or(0.0) };
         let y = ((1.0 - sigma) * (1.0 + sigma)).powf(1.0 / m);
         (y, y.powf(n) * (1.0 + self.x * self.speed_ratio(sigma)))
-    }
-}
-
-fn not_negative(quantity: &'static str, value: f64) -> Result<f64, ContactError> {
-    match value.is_finite() && value >= 0.0 {
-        true => Ok(value),
-        false => Err(ContactError::Negative { quantity, value }),
     }
 }
 

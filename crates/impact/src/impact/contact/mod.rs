@@ -16,6 +16,8 @@
 //!   sines.
 //! - [`hunt_crossley`]: a contact that loses energy, gamma d^n (1 + lambda d'): restitution, loop
 //!   of force and depth, duration.
+//! - `dashpot`: a spring with a dashpot, or a force with one that comes in by a step: restitution and
+//!   damping.
 //! - `line`: a line in place of the force, equation (15), which the paper's phases use as well.
 //! - `half_oscillation`: homotopy, iteration and the balance of harmonics.
 //! - [`law`]: all laws by name, beside the exact one: [`comparison`].
@@ -31,6 +33,7 @@ use crate::decimal::decimal;
 use crate::numeric::ode::quadrature::QuadratureError;
 use crate::numeric::ode::root::RootError;
 
+mod dashpot;
 pub mod exact;
 mod half_oscillation;
 pub mod hunt_crossley;
@@ -39,6 +42,7 @@ pub(super) mod line;
 pub mod power_law;
 mod time;
 
+pub use dashpot::{Dashpot, StepContact};
 pub use exact::{ExactContact, SineSeries};
 pub use hunt_crossley::HuntCrossley;
 pub use law::{
@@ -162,6 +166,13 @@ fn in_range(quantity: &'static str, value: f64) -> Result<f64, ContactError> {
     match value.is_normal() && value > 0.0 {
         true => Ok(value),
         false => Err(ContactError::Range { quantity }),
+    }
+}
+
+fn not_negative(quantity: &'static str, value: f64) -> Result<f64, ContactError> {
+    match value.is_finite() && value >= 0.0 {
+        true => Ok(value),
+        false => Err(ContactError::Negative { quantity, value }),
     }
 }
 

@@ -18,9 +18,24 @@ use crate::expr::{Expr, ExprError, Function, Node};
 use crate::series::guard::Guard;
 use crate::symbol::Symbol;
 
-/// The expression with its roots extended across corners, so that they have a value on both sides.
-/// An argument of a corner must not jump, so that no steps are introduced inside of one.
-pub(crate) fn roots_across_corners(
+/// Extends the roots of an expression across corners, so that they have a value on both sides: the
+/// form in which [`System::new`](super::System::new) takes its right sides. An argument of a corner
+/// must not jump, so that no steps are introduced inside of one.
+///
+/// # Errors
+/// [`ExprError`] if an expression becomes too large.
+///
+/// ```
+/// # use lindstedt_dynamics as lindstedt;
+/// use lindstedt::expr::parse_expression;
+/// use lindstedt::system::roots_across_corners;
+///
+/// let force = parse_expression("k*max(x, 0)^(3/2)")?;
+/// let followed = roots_across_corners(&force, &[("k".into(), 2.0)].into())?;
+/// assert_eq!(followed.to_string(), "k*(x^2)^(3/4)*H(x)");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn roots_across_corners(
     expression: &Expr,
     values: &BTreeMap<Symbol, f64>,
 ) -> Result<Expr, ExprError> {

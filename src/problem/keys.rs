@@ -211,7 +211,6 @@ pub(super) fn given(file: &toml::Table) -> Vec<String> {
             toml::Value::Array(_) if ["material", "event"].contains(&name.as_str()) => {
                 keys.push(format!("[[{name}]]"))
             }
-            toml::Value::Array(_) if name == "material" => keys.push("[[material]]".to_owned()),
             toml::Value::Table(section) => {
                 keys.extend(section.keys().map(|key| format!("[{name}] {key}")))
             }

@@ -193,6 +193,34 @@ BackbonePoint.FIELDS = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class FittedResponseRow(Document):
+    """A row of a frequency response: the first harmonic, `amplitude cos(frequency t - phase)`.
+
+    Attributes:
+        frequency: The angular frequency of the drive.
+        amplitude: The measured amplitude.
+        phase: The measured phase, in radians; null where it is not given.
+        law_amplitude: The amplitude of the law.
+        law_phase: The phase of the law, in radians.
+    """
+
+    frequency: float
+    amplitude: float
+    phase: float | None
+    law_amplitude: float | None
+    law_phase: float | None
+
+
+FittedResponseRow.FIELDS = (
+    ("frequency", "frequency", None),
+    ("amplitude", "amplitude", None),
+    ("phase", "phase", None),
+    ("law_amplitude", "law_amplitude", None),
+    ("law_phase", "law_phase", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Restitution(Document):
     """The coefficient of restitution of one impact.
 
@@ -218,12 +246,14 @@ class Fit(Answer):
     Attributes:
         schema: The kind of document.
         data: The kind of measurement: `decay`, a record of a motion, `backbone`, a table of
-            frequencies against amplitudes, or `impacts`, times of impacts.
+            frequencies against amplitudes, `response`, amplitudes against the frequency of a
+            drive, or `impacts`, times of impacts.
         records: The records before any law; empty of tables and impacts.
         laws: The laws, the best first.
         best: The best law of a record; null of tables and impacts.
         backbone: Frequency and damping against amplitude, without a law, record by record; empty
             of tables and impacts.
+        response: The rows of a frequency response with its law; empty of everything else.
         impacts: The coefficient of restitution of each impact; empty of records and tables.
     """
 
@@ -233,6 +263,7 @@ class Fit(Answer):
     laws: tuple[FittedLaw, ...]
     best: BestLaw | None
     backbone: tuple[BackbonePoint, ...]
+    response: tuple[FittedResponseRow, ...]
     impacts: tuple[Restitution, ...]
 
 
@@ -243,5 +274,6 @@ Fit.FIELDS = (
     ("laws", "laws", several(FittedLaw.from_json)),
     ("best", "best", BestLaw.from_json),
     ("backbone", "backbone", several(BackbonePoint.from_json)),
+    ("response", "response", several(FittedResponseRow.from_json)),
     ("impacts", "impacts", several(Restitution.from_json)),
 )

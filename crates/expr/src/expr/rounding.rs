@@ -230,6 +230,23 @@ fn moved(function: &dyn Fn(f64) -> f64) -> Rounded {
 mod tests {
     use super::*;
 
+    /// Velocities that differ by rounding alone tell no sign at any size, so that no smaller ones would help;
+    /// a position that is too large would.
+    #[test]
+    fn a_difference_of_rounding_is_not_refused() {
+        let names: [Symbol; 2] = ["x".into(), "y".into()];
+        let friction: Expr = "x/20 + sgn(x - y)/5".parse().unwrap();
+        for count in 1..200_u64 {
+            let x = 0.3 + 0.0137 * count as f64;
+            let y = f64::from_bits(x.to_bits() + count % 3);
+            let values = names.iter().copied().zip([x, y]).collect();
+            assert_eq!(friction.check_digits(&values, &names), Ok(()), "{x:e} {y:e}");
+        }
+        let values = names.iter().copied().zip([1e17, 1.0]).collect();
+        let sine: Expr = "sin(x) + y".parse().unwrap();
+        assert!(sine.check_digits(&values, &names).is_err());
+    }
+
     #[test]
     fn the_bound_covers_the_error_and_is_no_empty_word() {
         // Each beside a form of the same function that does not cancel.

@@ -26,6 +26,7 @@ const LINES: [(&str, &str, &str); 102] = [
     ("resonance", "resonance = \"1:3\"", FORMULA),
     ("amplitude", "amplitude = \"first-harmonic\"", FORMULA),
     ("about", "about = \"x = 1\"", "equation = \"x'' - x + x^3 = 0\"\n"),
+    ("static_friction", "static_friction = 2", FORMULA),
     ("[values]", "[values]\nA = 0.25\neps = 0.5", FORMULA),
     (
         "[lagrangian] coordinates",
@@ -90,9 +91,8 @@ const LINES: [(&str, &str, &str); 102] = [
     ("[run] step_limit", "[run]\nstep_limit = 3", ""),
     ("[[material]]", "[[material]]\nname = \"Cork\"\nmodulus = 2e7", ""),
     ("[[wall]]", "[[wall]]\nbound = \"x < 9\"\nrestitution = 1", FORMULA),
-    ("static_friction", "static_friction = 2", FORMULA),
-    ("[[event]]", "[[event]]\nwhen = \"x < 0\"\nset = \"x' = -x'\"", FORMULA),
     ("[[wall]] contact", "[[wall]]\nbound = \"x < 9\"\ncontact = \"hertz K=1\"", FORMULA),
+    ("[[event]]", "[[event]]\nwhen = \"x < 0\"\nset = \"x' = -x'\"", FORMULA),
     ("[limits] mass", "[limits]\nmass = [0.02, 0.05]", ""),
     ("[limits] radius", "[limits]\nradius = [0.002, 0.01]", ""),
     ("[limits] length", "[limits]\nlength = [0.05, 0.2]", ""),

@@ -30,6 +30,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
     let swept =
         ["simulate", "--format", "csv", "--sweep", "zeta=0.1:0.2:2", "--sweep", "alpha=0.1:0.2:2"];
     let own = ["simulate", "x'' + k*x = 0", "--from", "x=1", "--at", "k=1"];
+    let slides = ["x'' + k*x + sgn(x')/10 = 0", "--from", "x=1.15", "--at", "k=1"];
     let hill =
         ["stability", "x'' + (delta + eps*cos(Omega*t))*x = 0", "--at", "eps=1", "--at", "Omega=2"];
     let driven = [
@@ -168,7 +169,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("simulate", own[1..].to_vec(), vec!["--wall", "x > 0", "--restitution", "1/2"]),
         ("simulate", own[1..].to_vec(), vec!["--restitution", "1/2"]),
         ("simulate", own[1..].to_vec(), vec!["--event", "x < 0: x' = -x'"]),
-        ("simulate", own[1..].to_vec(), vec!["--static-friction", "2"]),
+        ("simulate", slides.to_vec(), vec!["--static-friction", "2"]),
         ("simulate", vec![], vec!["--static-friction", "2"]),
         ("simulate", vec![], vec!["--event", "x < 0: x' = -x'"]),
         ("simulate", own[1..].to_vec(), vec!["--contact", "x < 1/2: hertz K=1"]),

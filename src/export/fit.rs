@@ -88,19 +88,35 @@ fn of_response(response: &Response, fit: &ResponseFit) -> Result<String, FigureE
             .map(|(row, [_, phase])| (row.frequency, *phase))
             .collect(),
     ];
-    let titles = [("Amplitude", "amplitude"), ("Phase", "phase behind the drive's time")];
+    let titles = [("Amplitude", "amplitude"), ("Phase", "phase")];
     let mut panels = vec![];
     for ((title, label), [measured, law]) in titles.into_iter().zip([&amplitudes, &phases]) {
         if measured.is_empty() {
             continue;
         }
-        let curves = vec![
-            curve("measured", measured, CurveStyle::MARKED_POINTS),
-            curve("law", law, CurveStyle::DOTS),
-        ];
+        let mut curves = vec![curve("measured", measured, CurveStyle::MARKED_POINTS)];
+        let sweeps = sweeps(law);
+        curves.extend(sweeps.iter().map(|points| curve("law", points, CurveStyle::SECOND_FORMULA)));
         panels.push(panel(title, ["angular frequency of the drive", label], curves, vec![]));
     }
     figure(&panels, &format!("{}.", fit.law.equation))
+}
+
+/// Points in pieces of growing or of falling frequency, as a table that was swept up and down has them.
+fn sweeps(points: &Points) -> Vec<Points> {
+    let mut pieces: Vec<Points> = vec![];
+    for point in points {
+        match pieces.last_mut() {
+            Some(piece) if piece.len() < 2 => piece.push(*point),
+            Some(piece)
+                if (point.0 - piece[piece.len() - 1].0) * (piece[1].0 - piece[0].0) > 0.0 =>
+            {
+                piece.push(*point);
+            }
+            _ => pieces.push(vec![*point]),
+        }
+    }
+    pieces
 }
 
 /// The times at which the law is drawn over a record.

@@ -102,18 +102,22 @@ fn of_response(response: &Response, fit: &ResponseFit) -> Result<String, FigureE
     figure(&panels, &format!("{}.", fit.law.equation))
 }
 
-/// Points in pieces of growing or of falling frequency, as a table that was swept up and down has them.
+/// Points in pieces of growing or of falling frequency, as a table that was swept up and down has them; a
+/// step much longer than the one before begins another sweep.
 fn sweeps(points: &Points) -> Vec<Points> {
+    const LONGER: f64 = 3.0;
     let mut pieces: Vec<Points> = vec![];
     for point in points {
-        match pieces.last_mut() {
-            Some(piece) if piece.len() < 2 => piece.push(*point),
-            Some(piece)
-                if (point.0 - piece[piece.len() - 1].0) * (piece[1].0 - piece[0].0) > 0.0 =>
-            {
-                piece.push(*point);
+        let goes_on = pieces.last().is_some_and(|piece| match piece.as_slice() {
+            [.., before, last] => {
+                let [step, next] = [last.0 - before.0, point.0 - last.0];
+                step * next > 0.0 && next.abs() <= LONGER * step.abs()
             }
-            _ => pieces.push(vec![*point]),
+            _ => true,
+        });
+        match pieces.last_mut().filter(|_| goes_on) {
+            Some(piece) => piece.push(*point),
+            None => pieces.push(vec![*point]),
         }
     }
     pieces

@@ -104,7 +104,7 @@ fn of_response(response: &Response, fit: &ResponseFit) -> Result<String, FigureE
 
 /// Points in pieces of growing or of falling frequency, as a table that was swept up and down has them; a
 /// step much longer than the one before begins another sweep.
-fn sweeps(points: &Points) -> Vec<Points> {
+fn sweeps(points: &[(f64, f64)]) -> Vec<Points> {
     const LONGER: f64 = 3.0;
     let mut pieces: Vec<Points> = vec![];
     for point in points {

@@ -78,7 +78,7 @@ impl Sheet {
         self.rows.len()
     }
 
-    /// The same of the second angle.
+    /// One more than the largest harmonic of the second angle.
     pub(super) fn width(&self) -> usize {
         self.rows.iter().map(Vec::len).max().unwrap_or(0)
     }

@@ -17,7 +17,7 @@
 //! direction u_i leaves its zero. Therefore only crossings in one direction end a segment, and each
 //! such event has a second one at a level that rounding does not reach.
 //!
-//! Where static friction is r > 1 times the sliding one, a held surface is released where |s_i| grows
+//! With static friction r > 1 times the sliding one, a held surface is released where |s_i| grows
 //! through r (H. Olsson, K. J. Åström, C. Canudas de Wit, M. Gäfvert, P. Lischinsky, *European Journal of Control* 4
 //! (1998) 176, section 2). The equations as typed do not show that a motion with 1 < |s_i| < r is held, so that each
 //! zero of a u_i ends a segment.

@@ -141,7 +141,7 @@ impl Flow {
         })
     }
 
-    /// The same flow, of which no motion is followed to its end once this interrupt is requested.
+    /// This flow with an interrupt: no motion is followed to its end once that is requested.
     pub(super) fn until(self, interrupt: Interrupt) -> Self {
         Self { interrupt, ..self }
     }

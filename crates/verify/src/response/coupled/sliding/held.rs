@@ -4,8 +4,8 @@
 //! A s = -g(s = 0),    A = g_s,    |s_i| <= 1        g_i = du_i/dt, of surfaces with independent normals
 //! ```
 //!
-//! Where more surfaces hold than have independent normals, as those of two bodies on the floor and on
-//! each other, sides that the rates leave undetermined are tied to one size.
+//! More surfaces may hold than have independent normals, as of two bodies on the floor and on each other:
+//! sides that the rates leave undetermined are then tied to one size.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -165,7 +165,7 @@ impl EventRun<'_> {
         Err(SlidingStop::Undetermined(on[0]))
     }
 
-    /// Those of these surfaces whose normals are independent of those of the ones before.
+    /// The surfaces of this list whose normals are independent of the normals before them.
     pub(super) fn independent(&self, surfaces: &[usize]) -> Vec<usize> {
         let normals = self.surfaces.normals.at(&self.here());
         let mut directions: Vec<DVector<f64>> = Vec::new();

@@ -90,13 +90,14 @@ fn of_response(response: &Response, fit: &ResponseFit) -> Result<String, FigureE
     ];
     let titles = [("Amplitude", "amplitude"), ("Phase", "phase")];
     let mut panels = vec![];
-    for ((title, label), [measured, law]) in titles.into_iter().zip([&amplitudes, &phases]) {
+    let laws = [&amplitudes, &phases].map(|[_, law]| sweeps(law));
+    let quantities = [&amplitudes, &phases].into_iter().zip(&laws);
+    for ((title, label), ([measured, _], law)) in titles.into_iter().zip(quantities) {
         if measured.is_empty() {
             continue;
         }
         let mut curves = vec![curve("measured", measured, CurveStyle::MARKED_POINTS)];
-        let sweeps = sweeps(law);
-        curves.extend(sweeps.iter().map(|points| curve("law", points, CurveStyle::SECOND_FORMULA)));
+        curves.extend(law.iter().map(|points| curve("law", points, CurveStyle::SECOND_FORMULA)));
         panels.push(panel(title, ["angular frequency of the drive", label], curves, vec![]));
     }
     figure(&panels, &format!("{}.", fit.law.equation))

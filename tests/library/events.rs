@@ -145,8 +145,14 @@ fn kicks_in_the_middle_follow_each_other_by_half_a_period() {
 fn a_kicked_rotor_has_its_map() {
     for integrator in BOTH {
         let events = ["sin(2*pi*t) > 0: x' = x' + K*sin(x)"];
-        let rotor = course("x'' = 0", &events, "K=0.5", &[("x", 1.0), ("x'", 0.3)], 20.5);
+        let mut rotor = course("x'' = 0", &events, "K=0.5", &[("x", 1.0), ("x'", 0.3)], 20.5);
+        rotor.section = Some(PoincareSection::Events);
         let motion = followed(&rotor, integrator);
+        // The section has the states before the kicks, at the start too.
+        assert_eq!(
+            (motion.crossings().len(), &motion.crossings()[0].state[..]),
+            (21, &[1.0, 0.3][..])
+        );
         let (mut x, mut v) = (1.0_f64, 0.3_f64);
         // The start is at a kick.
         assert_eq!(motion.events.occurrences.len(), 21);

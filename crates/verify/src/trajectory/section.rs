@@ -15,7 +15,7 @@
 //! A motion that turns back where s is zero touches the section and does not cross it, on whichever
 //! side rounding leaves it there.
 
-use super::{Trajectory, TrajectoryError, TrajectorySegment};
+use super::{EventOccurrence, Trajectory, TrajectoryError, TrajectorySegment};
 use crate::expr::Expr;
 use crate::mechanics::Rates;
 use crate::numeric::ode::root::find_root;
@@ -123,6 +123,7 @@ impl Trajectory {
     /// Finds both.
     pub(super) fn find_on_section(&self) -> Result<OnSection, TrajectoryError> {
         let course = &self.course;
+        let in_time = |time: &f64| *time >= course.after;
         let mut touched: Vec<[f64; 3]> = Vec::new();
         let times: Vec<f64> = match &course.section {
             None => vec![],
@@ -132,11 +133,16 @@ impl Trajectory {
                 times.dedup();
                 times
             }
+            // At the start no stretch ends with the state before an event.
             Some(PoincareSection::Events) => {
-                let events = self.events.occurrences.iter();
-                let mut times: Vec<f64> = events.map(|event| event.time).collect();
-                times.dedup();
-                times
+                let events = self.events.occurrences.iter().filter(|event| in_time(&event.time));
+                let before = |event: &EventOccurrence| Crossing {
+                    time: event.time,
+                    state: event.before.clone(),
+                };
+                let mut crossings: Vec<Crossing> = events.map(before).collect();
+                crossings.dedup_by(|next, first| next.time == first.time);
+                return Ok(OnSection { crossings, touches: vec![] });
             }
             Some(PoincareSection::Rising(expression)) => {
                 let met = self.pieces.iter().flat_map(|piece| {
@@ -164,7 +170,6 @@ impl Trajectory {
                 (1..=count as u32).map(|index| number * f64::from(index)).collect()
             }
         };
-        let in_time = |time: &f64| *time >= course.after;
         let sampled =
             self.sample(times.into_iter().filter(in_time).collect(), course.rates.states.len());
         let crossing =

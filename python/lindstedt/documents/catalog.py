@@ -42,6 +42,8 @@ class Entry(Document):
         source: Where it is studied.
         published: The law as its source prints it, `omega = ... + ...` or `omega^2 = ... + ...`;
             null where none is printed.
+        walls: The sides of rigid walls on which motions are allowed, such as `x < d`, each with
+            the coefficient of restitution `e`.
         methods: Every method, and whether it applies.
     """
 
@@ -50,6 +52,7 @@ class Entry(Document):
     equation: str
     source: str
     published: str | None
+    walls: tuple[str, ...]
     methods: tuple[Applicability, ...]
 
 
@@ -59,6 +62,7 @@ Entry.FIELDS = (
     ("equation", "equation", None),
     ("source", "source", None),
     ("published", "published", None),
+    ("walls", "walls", tuple),
     ("methods", "methods", several(Applicability.from_json)),
 )
 

@@ -38,6 +38,7 @@ def derive(
     problem: Problem,
     method: str | None = None,
     *,
+    contact: Sequence[str] | None = None,
     order: int | tuple[int, ...] | str | None = None,
     amplitude: Literal["initial", "first-harmonic"] | None = None,
     small: str | None = None,
@@ -65,6 +66,9 @@ def derive(
             iteration-perturbation, parameter-expansion, harmonic-balance, energy-balance, max-min,
             amplitude-frequency, hamiltonian, variational-iteration, frequency-formula, averaging,
             pade, hermite-pade, multiple-scales or exact.
+        contact: A wall that gives way, and its law: hertz, hunt-crossley, kelvin-voigt, kelvin-
+            voigt-no-pull or step ("x < 1: hunt-crossley K=1e5 restitution=0.8 speed=2");
+            repeatable.
         order: Highest power of the small parameter kept, inclusive; harmonics of harmonic-
             balance; degrees L,M of pade, P,Q,R of hermite-pade.
         amplitude: What the amplitude measures.
@@ -96,12 +100,13 @@ def derive(
         Refused: The problem is refused, with the term and a way forward.
         UsageError: An option has a value that it cannot have.
     """
-    return ask("derive", problem, {"method": method, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "steps": steps, "mode": mode, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+    return ask("derive", problem, {"method": method, "contact": contact, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "steps": steps, "mode": mode, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
 
 def compare(
     problem: Problem,
     *,
+    contact: Sequence[str] | None = None,
     small: str | None = None,
     about: Values | None = None,
     tolerance: float | None = None,
@@ -115,6 +120,9 @@ def compare(
     Args:
         problem: An equation, an `Oscillator`, a name of the catalogue, the path of a problem
             file, or the tables of one.
+        contact: A wall that gives way, and its law: hertz, hunt-crossley, kelvin-voigt, kelvin-
+            voigt-no-pull or step ("x < 1: hunt-crossley K=1e5 restitution=0.8 speed=2");
+            repeatable.
         small: The small parameter; A for the amplitude.
         about: The equilibrium to swing about, x=1 say: a stable one, without this the nearest
             to zero, or an unstable one between two wells for motions over both.
@@ -128,7 +136,7 @@ def compare(
         Refused: The problem is refused, with the term and a way forward.
         UsageError: An option has a value that it cannot have.
     """
-    return ask("compare", problem, {"small": small, "about": about, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+    return ask("compare", problem, {"contact": contact, "small": small, "about": about, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
 
 def impact(
@@ -187,6 +195,9 @@ def simulate(
     step_limit: int | None = None,
     wall: Sequence[str] | None = None,
     restitution: Sequence[str] | None = None,
+    event: Sequence[str] | None = None,
+    static_friction: float | None = None,
+    contact: Sequence[str] | None = None,
     every: Value | None = None,
     section: str | None = None,
     after: float | None = None,
@@ -216,10 +227,19 @@ def simulate(
             < x < 1"); repeatable.
         restitution: The speed after an impact over that before, between 0 and 1: one for all
             walls, or one for each.
+        event: An event: where a condition comes true, states are set ("x < 0: x' = -0.8*x'",
+            "sin(w*t) > 0: x' = x' + p; y = 0"); = in place of < or > counts in both directions;
+            repeatable.
+        static_friction: Static over sliding friction, 1 or more: what dry friction, mu*sgn(x'),
+            holds, it holds up to so many times the force with which it slides (1.5, mus/muk).
+        contact: A wall that gives way, and its law: hertz, hunt-crossley, kelvin-voigt, kelvin-
+            voigt-no-pull or step ("x < 1: hunt-crossley K=1e5 restitution=0.8 speed=2");
+            repeatable.
         every: Look at an equation or a mechanism of one's own once in this time (Poincaré's
             section): 2*pi/Omega.
         section: Look at it where an expression of its coordinates, velocities and the time
-            grows through zero: x', "x - 0.1"; or just before each impact on a wall: impacts.
+            grows through zero: x', "x - 0.1"; or just before each impact on a wall: impacts; or
+            each event: events.
         after: Look at it from this time on, when it has settled.
         sample: Report the state at this time (repeatable).
         lyapunov: Give the largest Lyapunov exponent of an equation or a mechanism of one's own,
@@ -245,7 +265,7 @@ def simulate(
         Refused: The problem is refused, with the term and a way forward.
         UsageError: An option has a value that it cannot have.
     """
-    return ask("simulate", problem, {"from_": from_, "until": until, "step_limit": step_limit, "wall": wall, "restitution": restitution, "every": every, "section": section, "after": after, "sample": sample, "lyapunov": lyapunov, "integrator": integrator, "chain": chain, "sweep": sweep, "baseline": baseline, "jobs": jobs, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+    return ask("simulate", problem, {"from_": from_, "until": until, "step_limit": step_limit, "wall": wall, "restitution": restitution, "event": event, "static_friction": static_friction, "contact": contact, "every": every, "section": section, "after": after, "sample": sample, "lyapunov": lyapunov, "integrator": integrator, "chain": chain, "sweep": sweep, "baseline": baseline, "jobs": jobs, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
 
 def response(
@@ -259,6 +279,7 @@ def response(
     periods: int | None = None,
     wall: Sequence[str] | None = None,
     restitution: Sequence[str] | None = None,
+    contact: Sequence[str] | None = None,
     tolerance: float | None = None,
     timeout: float | None = None,
     at: Values | None = None,
@@ -285,6 +306,9 @@ def response(
             < x < 1"); repeatable.
         restitution: The speed after an impact over that before, between 0 and 1: one for all
             walls, or one for each.
+        contact: A wall that gives way, and its law: hertz, hunt-crossley, kelvin-voigt, kelvin-
+            voigt-no-pull or step ("x < 1: hunt-crossley K=1e5 restitution=0.8 speed=2");
+            repeatable.
         tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
         timeout: Give up after so many seconds.
         at: Values of symbols whose names are options or no words, `{"small": 1}`.
@@ -295,7 +319,7 @@ def response(
         Refused: The problem is refused, with the term and a way forward.
         UsageError: An option has a value that it cannot have.
     """
-    return ask("response", problem, {"method": method, "vary": vary, "along": along, "of": of, "order": order, "periods": periods, "wall": wall, "restitution": restitution, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+    return ask("response", problem, {"method": method, "vary": vary, "along": along, "of": of, "order": order, "periods": periods, "wall": wall, "restitution": restitution, "contact": contact, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
 
 def absorber(
@@ -376,6 +400,7 @@ def orbits(
 def shortest(
     problem: Problem,
     *,
+    contact: Sequence[str] | None = None,
     range: Values | None = None,
     error: float | None = None,
     quantity: Literal["omega", "omega^2", "T", "contact-time"] | None = None,
@@ -397,6 +422,9 @@ def shortest(
     Args:
         problem: An equation, an `Oscillator`, a name of the catalogue, the path of a problem
             file, or the tables of one.
+        contact: A wall that gives way, and its law: hertz, hunt-crossley, kelvin-voigt, kelvin-
+            voigt-no-pull or step ("x < 1: hunt-crossley K=1e5 restitution=0.8 speed=2");
+            repeatable.
         range: What varies, and from where to where: the amplitude (A=0:2.8), a parameter
             (mu=0:10), or a product on which the frequency alone depends (eps*A^2=0:inf).
         error: The largest relative error that is allowed, 0.001 say; without it the whole
@@ -424,7 +452,7 @@ def shortest(
         Refused: The problem is refused, with the term and a way forward.
         UsageError: An option has a value that it cannot have.
     """
-    return ask("shortest", problem, {"range": range, "error": error, "quantity": quantity, "about": about, "mode": mode, "amplitude": amplitude, "atom": atom, "longest": longest, "exact_at_rest": exact_at_rest, "growth": growth, "certificate": certificate, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+    return ask("shortest", problem, {"contact": contact, "range": range, "error": error, "quantity": quantity, "about": about, "mode": mode, "amplitude": amplitude, "atom": atom, "longest": longest, "exact_at_rest": exact_at_rest, "growth": growth, "certificate": certificate, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
 
 def friction(
@@ -616,6 +644,7 @@ def certify(
     problem: Problem,
     method: str | None = None,
     *,
+    contact: Sequence[str] | None = None,
     order: int | tuple[int, ...] | str | None = None,
     amplitude: Literal["initial", "first-harmonic"] | None = None,
     small: str | None = None,
@@ -644,6 +673,9 @@ def certify(
             iteration-perturbation, parameter-expansion, harmonic-balance, energy-balance, max-min,
             amplitude-frequency, hamiltonian, variational-iteration, frequency-formula, averaging,
             pade, hermite-pade, multiple-scales or exact.
+        contact: A wall that gives way, and its law: hertz, hunt-crossley, kelvin-voigt, kelvin-
+            voigt-no-pull or step ("x < 1: hunt-crossley K=1e5 restitution=0.8 speed=2");
+            repeatable.
         order: Highest power of the small parameter kept, inclusive; harmonics of harmonic-
             balance; degrees L,M of pade, P,Q,R of hermite-pade.
         amplitude: What the amplitude measures.
@@ -678,7 +710,7 @@ def certify(
         Refused: The problem is refused, with the term and a way forward.
         UsageError: An option has a value that it cannot have.
     """
-    return ask("certify", problem, {"method": method, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "range": range, "no_formula": no_formula, "mode": mode, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+    return ask("certify", problem, {"method": method, "contact": contact, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "range": range, "no_formula": no_formula, "mode": mode, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
 
 def check(
@@ -713,6 +745,7 @@ class EquationCommands:
         self,
         method: str | None = None,
         *,
+        contact: Sequence[str] | None = None,
         order: int | tuple[int, ...] | str | None = None,
         amplitude: Literal["initial", "first-harmonic"] | None = None,
         small: str | None = None,
@@ -738,6 +771,9 @@ class EquationCommands:
                 iteration-perturbation, parameter-expansion, harmonic-balance, energy-balance, max-
                 min, amplitude-frequency, hamiltonian, variational-iteration, frequency-formula,
                 averaging, pade, hermite-pade, multiple-scales or exact.
+            contact: A wall that gives way, and its law: hertz, hunt-crossley, kelvin-voigt,
+                kelvin-voigt-no-pull or step ("x < 1: hunt-crossley K=1e5 restitution=0.8 speed=2");
+                repeatable.
             order: Highest power of the small parameter kept, inclusive; harmonics of harmonic-
                 balance; degrees L,M of pade, P,Q,R of hermite-pade.
             amplitude: What the amplitude measures.
@@ -771,11 +807,12 @@ class EquationCommands:
             Refused: The problem is refused, with the term and a way forward.
             UsageError: An option has a value that it cannot have.
         """
-        return ask("derive", self.problem, {"method": method, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "steps": steps, "mode": mode, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+        return ask("derive", self.problem, {"method": method, "contact": contact, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "steps": steps, "mode": mode, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
     def compare(
         self,
         *,
+        contact: Sequence[str] | None = None,
         small: str | None = None,
         about: Values | None = None,
         tolerance: float | None = None,
@@ -787,6 +824,9 @@ class EquationCommands:
         """Every method of the field on one equation, in one table, judged against the true motion.
 
         Args:
+            contact: A wall that gives way, and its law: hertz, hunt-crossley, kelvin-voigt,
+                kelvin-voigt-no-pull or step ("x < 1: hunt-crossley K=1e5 restitution=0.8 speed=2");
+                repeatable.
             small: The small parameter; A for the amplitude.
             about: The equilibrium to swing about, x=1 say: a stable one, without this the
                 nearest to zero, or an unstable one between two wells for motions over both.
@@ -800,7 +840,7 @@ class EquationCommands:
             Refused: The problem is refused, with the term and a way forward.
             UsageError: An option has a value that it cannot have.
         """
-        return ask("compare", self.problem, {"small": small, "about": about, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+        return ask("compare", self.problem, {"contact": contact, "small": small, "about": about, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
     def simulate(
         self,
@@ -810,6 +850,9 @@ class EquationCommands:
         step_limit: int | None = None,
         wall: Sequence[str] | None = None,
         restitution: Sequence[str] | None = None,
+        event: Sequence[str] | None = None,
+        static_friction: float | None = None,
+        contact: Sequence[str] | None = None,
         every: Value | None = None,
         section: str | None = None,
         after: float | None = None,
@@ -837,10 +880,20 @@ class EquationCommands:
                 "-1 < x < 1"); repeatable.
             restitution: The speed after an impact over that before, between 0 and 1: one for
                 all walls, or one for each.
+            event: An event: where a condition comes true, states are set ("x < 0: x' =
+                -0.8*x'", "sin(w*t) > 0: x' = x' + p; y = 0"); = in place of < or > counts in both
+                directions; repeatable.
+            static_friction: Static over sliding friction, 1 or more: what dry friction,
+                mu*sgn(x'), holds, it holds up to so many times the force with which it slides (1.5,
+                mus/muk).
+            contact: A wall that gives way, and its law: hertz, hunt-crossley, kelvin-voigt,
+                kelvin-voigt-no-pull or step ("x < 1: hunt-crossley K=1e5 restitution=0.8 speed=2");
+                repeatable.
             every: Look at an equation or a mechanism of one's own once in this time (Poincaré's
                 section): 2*pi/Omega.
             section: Look at it where an expression of its coordinates, velocities and the time
-                grows through zero: x', "x - 0.1"; or just before each impact on a wall: impacts.
+                grows through zero: x', "x - 0.1"; or just before each impact on a wall: impacts; or
+                each event: events.
             after: Look at it from this time on, when it has settled.
             sample: Report the state at this time (repeatable).
             lyapunov: Give the largest Lyapunov exponent of an equation or a mechanism of one's
@@ -867,7 +920,7 @@ class EquationCommands:
             Refused: The problem is refused, with the term and a way forward.
             UsageError: An option has a value that it cannot have.
         """
-        return ask("simulate", self.problem, {"from_": from_, "until": until, "step_limit": step_limit, "wall": wall, "restitution": restitution, "every": every, "section": section, "after": after, "sample": sample, "lyapunov": lyapunov, "integrator": integrator, "chain": chain, "sweep": sweep, "baseline": baseline, "jobs": jobs, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+        return ask("simulate", self.problem, {"from_": from_, "until": until, "step_limit": step_limit, "wall": wall, "restitution": restitution, "event": event, "static_friction": static_friction, "contact": contact, "every": every, "section": section, "after": after, "sample": sample, "lyapunov": lyapunov, "integrator": integrator, "chain": chain, "sweep": sweep, "baseline": baseline, "jobs": jobs, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
     def response(
         self,
@@ -880,6 +933,7 @@ class EquationCommands:
         periods: int | None = None,
         wall: Sequence[str] | None = None,
         restitution: Sequence[str] | None = None,
+        contact: Sequence[str] | None = None,
         tolerance: float | None = None,
         timeout: float | None = None,
         at: Values | None = None,
@@ -904,6 +958,9 @@ class EquationCommands:
                 "-1 < x < 1"); repeatable.
             restitution: The speed after an impact over that before, between 0 and 1: one for
                 all walls, or one for each.
+            contact: A wall that gives way, and its law: hertz, hunt-crossley, kelvin-voigt,
+                kelvin-voigt-no-pull or step ("x < 1: hunt-crossley K=1e5 restitution=0.8 speed=2");
+                repeatable.
             tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
             timeout: Give up after so many seconds.
             at: Values of symbols whose names are options or no words, `{"small": 1}`.
@@ -914,7 +971,7 @@ class EquationCommands:
             Refused: The problem is refused, with the term and a way forward.
             UsageError: An option has a value that it cannot have.
         """
-        return ask("response", self.problem, {"method": method, "vary": vary, "along": along, "of": of, "order": order, "periods": periods, "wall": wall, "restitution": restitution, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+        return ask("response", self.problem, {"method": method, "vary": vary, "along": along, "of": of, "order": order, "periods": periods, "wall": wall, "restitution": restitution, "contact": contact, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
     def stability(
         self,
@@ -954,6 +1011,7 @@ class EquationCommands:
         self,
         method: str | None = None,
         *,
+        contact: Sequence[str] | None = None,
         order: int | tuple[int, ...] | str | None = None,
         amplitude: Literal["initial", "first-harmonic"] | None = None,
         small: str | None = None,
@@ -980,6 +1038,9 @@ class EquationCommands:
                 iteration-perturbation, parameter-expansion, harmonic-balance, energy-balance, max-
                 min, amplitude-frequency, hamiltonian, variational-iteration, frequency-formula,
                 averaging, pade, hermite-pade, multiple-scales or exact.
+            contact: A wall that gives way, and its law: hertz, hunt-crossley, kelvin-voigt,
+                kelvin-voigt-no-pull or step ("x < 1: hunt-crossley K=1e5 restitution=0.8 speed=2");
+                repeatable.
             order: Highest power of the small parameter kept, inclusive; harmonics of harmonic-
                 balance; degrees L,M of pade, P,Q,R of hermite-pade.
             amplitude: What the amplitude measures.
@@ -1015,4 +1076,4 @@ class EquationCommands:
             Refused: The problem is refused, with the term and a way forward.
             UsageError: An option has a value that it cannot have.
         """
-        return ask("certify", self.problem, {"method": method, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "range": range, "no_formula": no_formula, "mode": mode, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+        return ask("certify", self.problem, {"method": method, "contact": contact, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "range": range, "no_formula": no_formula, "mode": mode, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]

@@ -57,7 +57,7 @@ pub struct SimulateArguments {
     pub(super) events: EventArguments,
     /// Static over sliding friction, 1 or more: what dry friction, mu*sgn(x'), holds, it holds up to so
     /// many times the force with which it slides (1.5, mus/muk)
-    #[arg(long, value_name = "R", allow_hyphen_values = true)]
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     pub(super) static_friction: Option<String>,
     #[command(flatten)]
     contacts: ContactArguments,

@@ -58,8 +58,8 @@ class Motion(Course, MotionDocument):
     """
 
     @property
-    def events(self) -> tuple[float, ...]:
-        """The times at which a section is touched; empty where none was asked for."""
+    def section_times(self) -> tuple[float, ...]:
+        """The times at which the motion was looked at; empty where no section was asked for."""
         return () if self.section is None else tuple(point.t for point in self.section.states)
 
 

@@ -84,12 +84,12 @@ fn is_true(fit: &lindstedt_fit::fit::response::ResponseFit, truth: &[(&str, f64)
 fn a_duffing_oscillator_is_found_from_a_response_with_a_fold() {
     let law = Law::parse("x'' + c*x' + k*x + b*x^3 = F*cos(Omega*t)").unwrap();
     let truth = [("c", 0.1), ("k", 1.0), ("b", 0.5), ("F", 0.3)];
-    const NOISE: f64 = 2e-3;
+    const NOISE: f64 = 1e-3;
     let exact = duffing(0.3);
     let mut square = 0.0;
     let mut count = 0.0;
     for seed in 0..3 {
-        for of_phase in [None, Some(4e-3)] {
+        for of_phase in [None, Some(2e-3)] {
             let rows = noisy(&exact, seed, NOISE, of_phase);
             let fit = fit_response(&law, &Response { rows, known: vec![] }, None).unwrap();
             is_true(&fit, &truth, &format!("seed {seed} {of_phase:?}"));

@@ -71,15 +71,18 @@ impl Expr {
         uncertain: &[Symbol],
     ) -> Result<(), LostDigits> {
         const NEARER: [f64; 5] = [1.0, 0.999, 0.98, 0.9, 0.7];
-        /// The decades in a row over which smaller values have digits.
-        const DECADES: usize = 12;
-        let lost_at = |scale: f64| {
+        /// Factor of the errors at smaller values, so that the sign of a difference of rounding errors is
+        /// certain at none of them, as it may be by chance.
+        const WIDER: f64 = 64.0;
+        let lost_at = |scale: f64, wider: f64| {
             let (mut least, mut size) = (f64::INFINITY, 0.0_f64);
             for factor in NEARER.map(|factor| scale * factor) {
                 let there = |symbol: Symbol| {
                     let value = *values.get(&symbol)?;
                     Some(match uncertain.contains(&symbol) {
-                        true => (factor * value, 0.5 * f64::EPSILON * (factor * value).abs()),
+                        true => {
+                            (factor * value, 0.5 * wider * f64::EPSILON * (factor * value).abs())
+                        }
                         false => (value, 0.0),
                     })
                 };
@@ -92,16 +95,11 @@ impl Expr {
             }
             (size > 0.0 && least.is_finite()).then(|| least / size)
         };
-        let Some(lost) = lost_at(1.0).filter(|lost| *lost > MOST_LOST) else {
+        let Some(lost) = lost_at(1.0, 1.0).filter(|lost| *lost > MOST_LOST) else {
             return Ok(());
         };
-        // At one scale the sign of a difference of rounding errors may be certain by chance.
-        let (mut run, mut is_restored) = (0, false);
-        for lost in (1..=300).filter_map(|tenths| lost_at(0.1_f64.powi(tenths))) {
-            run = if lost <= MOST_LOST { run + 1 } else { 0 };
-            is_restored |= run >= DECADES;
-        }
-        if !is_restored {
+        let mut smaller = (1..=80).filter_map(|thousands| lost_at(1e-3_f64.powi(thousands), WIDER));
+        if !smaller.any(|lost| lost <= MOST_LOST) {
             return Ok(());
         }
         let of_one = |name: &Symbol| values.get(name).map_or(0.0, |value| value.abs());

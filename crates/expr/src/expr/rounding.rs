@@ -72,10 +72,11 @@ impl Expr {
     ) -> Result<(), LostDigits> {
         const NEARER: [f64; 5] = [1.0, 0.999, 0.98, 0.9, 0.7];
         /// Factor of the errors at smaller values, so that the sign of a difference of rounding errors is
-        /// certain at none of them, as it may be by chance.
+        /// certain at none of them, as it may be by chance; there the largest error counts, since such a
+        /// difference may be zero as well.
         const WIDER: f64 = 64.0;
         let lost_at = |scale: f64, wider: f64| {
-            let (mut least, mut size) = (f64::INFINITY, 0.0_f64);
+            let (mut least, mut most, mut size) = (f64::INFINITY, 0.0_f64, 0.0_f64);
             for factor in NEARER.map(|factor| scale * factor) {
                 let there = |symbol: Symbol| {
                     let value = *values.get(&symbol)?;
@@ -89,17 +90,17 @@ impl Expr {
                 if let Some((value, error)) =
                     self.evaluate_rounded(&there).filter(|(value, _)| value.is_finite())
                 {
-                    least = least.min(error);
+                    (least, most) = (least.min(error), most.max(error));
                     size = size.max(value.abs());
                 }
             }
-            (size > 0.0 && least.is_finite()).then(|| least / size)
+            (size > 0.0 && least.is_finite()).then(|| [least / size, most / size])
         };
-        let Some(lost) = lost_at(1.0, 1.0).filter(|lost| *lost > MOST_LOST) else {
+        let Some([lost, _]) = lost_at(1.0, 1.0).filter(|[lost, _]| *lost > MOST_LOST) else {
             return Ok(());
         };
         let mut smaller = (1..=80).filter_map(|thousands| lost_at(1e-3_f64.powi(thousands), WIDER));
-        if !smaller.any(|lost| lost <= MOST_LOST) {
+        if !smaller.any(|[_, lost]| lost <= MOST_LOST) {
             return Ok(());
         }
         let of_one = |name: &Symbol| values.get(name).map_or(0.0, |value| value.abs());

@@ -8,7 +8,7 @@ use crate::fit::impacts::{ImpactAnswer, fit_impacts};
 use crate::fit::laws::Law;
 use crate::fit::motion::Quantity;
 use crate::fit::record::{Column, ReadError, ReadOptions, ReadRecord, Record, read, read_columns};
-use crate::fit::response::{Response, ResponseFit, ResponseRow, fit_response};
+use crate::fit::response::{FrequencyResponse, ResponseFit, ResponseRow, fit_response};
 use crate::fit::tables::{TableAnswer, TableRow, fit_table};
 use crate::report::{self, FitReport};
 use crate::symbol::Symbol;
@@ -283,7 +283,10 @@ fn to_angular(frequency: &Column) -> f64 {
 }
 
 /// The frequency response of a table, and the law of an equation with a drive.
-fn response(arguments: &FitArguments, text: &str) -> Result<(Response, ResponseFit), Failure> {
+fn response(
+    arguments: &FitArguments,
+    text: &str,
+) -> Result<(FrequencyResponse, ResponseFit), Failure> {
     /// The largest number of columns of a table.
     const MOST: usize = 16;
     let [equation] = arguments.equation.as_slice() else {
@@ -312,7 +315,7 @@ fn response(arguments: &FitArguments, text: &str) -> Result<(Response, ResponseF
         amplitude: *amplitude,
         phase: phase.and_then(|phase| phase.values.get(place).copied()),
     });
-    let response = Response { rows: rows.collect(), known };
+    let response = FrequencyResponse { rows: rows.collect(), known };
     let start = exact_values(&arguments.start, Ok(Values::default()))?.unwrap_or_default();
     let mut given: Vec<Symbol> = response.known.iter().map(|(name, _)| *name).collect();
     given.extend(law.drive_frequency());

@@ -9,7 +9,7 @@ use crate::fit::answer::{Answer, LawFit};
 use crate::fit::backbone::BackbonePoint;
 use crate::fit::fitted_record::FittedRecord;
 use crate::fit::impacts::MeasuredRestitution;
-use crate::fit::response::{Response, ResponseFit};
+use crate::fit::response::{FrequencyResponse, ResponseFit};
 use crate::fit::tables::{TableAnswer, TableRow};
 use crate::report::FitReport;
 
@@ -75,7 +75,7 @@ fn of_backbone(rows: &[TableRow], answer: &TableAnswer, name: &str) -> Result<St
 }
 
 /// Amplitudes, and phases, of a frequency response with those of the law.
-fn of_response(response: &Response, fit: &ResponseFit) -> Result<String, FigureError> {
+fn of_response(response: &FrequencyResponse, fit: &ResponseFit) -> Result<String, FigureError> {
     let rows = || response.rows.iter().zip(&fit.fitted);
     let amplitudes: [Points; 2] = [
         rows().map(|(row, _)| (row.frequency, row.amplitude)).collect(),

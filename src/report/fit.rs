@@ -6,7 +6,7 @@ use crate::fit::answer::{Answer, Estimate, LawFit};
 use crate::fit::fitted_record::FittedRecord;
 use crate::fit::impacts::{ImpactAnswer, ImpactFit};
 use crate::fit::record::ReadRecord;
-use crate::fit::response::{Response, ResponseFit};
+use crate::fit::response::{FrequencyResponse, ResponseFit};
 use crate::fit::tables::{TableAnswer, TableFit, TableRow};
 
 /// A measurement, and what it says.
@@ -31,7 +31,7 @@ pub enum FitReport<'a> {
     /// Amplitude, and perhaps phase, against the frequency of a drive.
     Response {
         /// The rows.
-        response: &'a Response,
+        response: &'a FrequencyResponse,
         /// The law.
         fit: &'a ResponseFit,
     },
@@ -425,7 +425,7 @@ fn of_rows<'a>(rows: &[TableRow]) -> Vec<Block<'a>> {
     vec![Block::Facts(vec![("table", format!("{} rows, amplitudes {amplitudes}", rows.len()))])]
 }
 
-fn of_response<'a>(response: &Response) -> Vec<Block<'a>> {
+fn of_response<'a>(response: &FrequencyResponse) -> Vec<Block<'a>> {
     let rows = &response.rows;
     let [frequencies, amplitudes] = [
         range_of(rows.iter().map(|row| row.frequency)),

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use lindstedt_fit::fit::laws::Law;
-use lindstedt_fit::fit::response::{Response, ResponseError, ResponseRow, fit_response};
+use lindstedt_fit::fit::response::{FrequencyResponse, ResponseError, ResponseRow, fit_response};
 use lindstedt_fit::numeric::ode::{IntegrationOptions, State, integrate};
 use lindstedt_fit::symbol::Symbol;
 use rand::{RngExt, SeedableRng};
@@ -91,7 +91,7 @@ fn a_duffing_oscillator_is_found_from_a_response_with_a_fold() {
     for seed in 0..3 {
         for of_phase in [None, Some(2e-3)] {
             let rows = noisy(&exact, seed, NOISE, of_phase);
-            let fit = fit_response(&law, &Response { rows, known: vec![] }, None).unwrap();
+            let fit = fit_response(&law, &FrequencyResponse { rows, known: vec![] }, None).unwrap();
             is_true(&fit, &truth, &format!("seed {seed} {of_phase:?}"));
             assert!((fit.noise / NOISE - 1.0).abs() < 0.4, "{}", fit.noise);
             for (name, value) in truth {
@@ -113,7 +113,8 @@ fn several_levels_of_a_known_drive_are_fitted_together() {
     let [large, small] = [rows(0.3, 7), rows(0.1, 8)];
     let drives = [vec![0.3; large.len()], vec![0.1; small.len()]].concat();
     let known = vec![(Symbol::new("F"), drives)];
-    let fit = fit_response(&law, &Response { rows: [large, small].concat(), known }, None).unwrap();
+    let fit = fit_response(&law, &FrequencyResponse { rows: [large, small].concat(), known }, None)
+        .unwrap();
     assert_eq!(fit.estimates.len(), 3);
     is_true(&fit, &[("c", 0.1), ("k", 1.0), ("b", 0.5)], "two levels");
 }
@@ -122,7 +123,10 @@ fn several_levels_of_a_known_drive_are_fitted_together() {
 fn mistakes_of_responses_are_named() {
     let rows = |count: u32| {
         let row = |frequency: f64| ResponseRow { frequency, amplitude: 1.0, phase: None };
-        Response { rows: range(0.5, 2.0, count).into_iter().map(row).collect(), known: vec![] }
+        FrequencyResponse {
+            rows: range(0.5, 2.0, count).into_iter().map(row).collect(),
+            known: vec![],
+        }
     };
     let law = |text: &str| Law::parse(text).unwrap();
     let free = law("x'' + c*x' + k*x = 0");

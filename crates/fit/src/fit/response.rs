@@ -35,7 +35,7 @@ pub struct ResponseRow {
 
 /// A frequency response at one level of the drive or at several.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Response {
+pub struct FrequencyResponse {
     /// The rows, in any order.
     pub rows: Vec<ResponseRow>,
     /// The letters of the equation that are known, with their value in each row, such as the size of a
@@ -107,7 +107,7 @@ impl ResponseError {
 ///
 /// ```
 /// use lindstedt_fit::fit::laws::Law;
-/// use lindstedt_fit::fit::response::{Response, ResponseRow, fit_response};
+/// use lindstedt_fit::fit::response::{FrequencyResponse, ResponseRow, fit_response};
 ///
 /// // A linear oscillator: A = F/sqrt((k - Omega^2)^2 + (c Omega)^2) with k = 1, c = 0.2, F = 0.5, and a ripple in place of noise.
 /// let row = |index: u32| {
@@ -116,7 +116,7 @@ impl ResponseError {
 ///     let ripple = 1e-3 * (7.0 * f64::from(index)).sin();
 ///     ResponseRow { frequency, amplitude: size + ripple, phase: None }
 /// };
-/// let response = Response { rows: (0..24).map(row).collect(), known: vec![] };
+/// let response = FrequencyResponse { rows: (0..24).map(row).collect(), known: vec![] };
 /// let law = Law::parse("x'' + c*x' + k*x = F*cos(Omega*t)")?;
 /// let fit = fit_response(&law, &response, None)?;
 /// let k = fit.estimates.iter().find(|own| own.name == "k").ok_or("a letter")?;
@@ -125,10 +125,10 @@ impl ResponseError {
 /// ```
 pub fn fit_response(
     law: &Law,
-    response: &Response,
+    response: &FrequencyResponse,
     start: Option<&[f64]>,
 ) -> Result<ResponseFit, ResponseError> {
-    let problem = Problem::new(law, response)?;
+    let problem = ResponseProblem::new(law, response)?;
     let no_fit = || ResponseError::NoFit(law.equation.clone());
     let starts = match start {
         Some(start) => vec![problem.unknown.iter().map(|place| start[*place]).collect()],
@@ -184,7 +184,7 @@ struct SteadyMotion {
 }
 
 /// The rows with the law that they are compared with.
-struct Problem<'a> {
+struct ResponseProblem<'a> {
     solver: MotionSolver,
     /// The acceleration as a function of x, v, t and the parameters.
     acceleration: CompiledFunction,
@@ -198,8 +198,8 @@ struct Problem<'a> {
 const SAMPLES: u32 = 64;
 const SAMPLES_OF_BALANCE: u32 = 24;
 
-impl<'a> Problem<'a> {
-    fn new(law: &Law, response: &'a Response) -> Result<Self, ResponseError> {
+impl<'a> ResponseProblem<'a> {
+    fn new(law: &Law, response: &'a FrequencyResponse) -> Result<Self, ResponseError> {
         let frequency =
             law.drive_frequency().ok_or_else(|| ResponseError::NoDrive(law.equation.clone()))?;
         let known = |name: Symbol| response.known.iter().find(|(own, _)| *own == name);

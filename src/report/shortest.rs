@@ -1,5 +1,6 @@
 //! The shortest frequency law within an error on a range, and the front of length against error.
 
+use super::certificate::percent;
 use super::{Block, Document, size_in_percent};
 use crate::certificate::{
     LawCertificate, LawError, LawQuantity, ModeAmplitude, MotionsOfLaw, StartOfLaw, restitution,
@@ -145,14 +146,16 @@ pub fn shortest<'a>(report: &'a ShortestReport<'a>) -> Document<'a> {
         vec![vec![Block::QuestionAsTyped(&report.equation), Block::Note(report.motion())]];
     if let Some(law) = report.shown() {
         let heading = match (report.error, report.chosen()) {
-            (Some(error), Some(_)) => format!("The shortest law within {}", size_in_percent(error)),
-            (Some(error), None) => match law.largest_error() <= error {
-                true => format!("Within {}, as far as was measured", size_in_percent(error)),
-                false => format!(
-                    "No law of this length is within {}; the nearest",
-                    size_in_percent(error)
-                ),
-            },
+            (Some(error), chosen) => {
+                let error_asked = percent(error);
+                match (chosen, law.largest_error() <= error) {
+                    (Some(_), _) => format!("The shortest law within {error_asked} %"),
+                    (None, true) => format!("Within {error_asked} %, as far as was measured"),
+                    (None, false) => {
+                        format!("No law of this length is within {error_asked} %; the nearest")
+                    }
+                }
+            }
             (None, _) => "The law with the smallest error".to_owned(),
         };
         let lines = report.lines.iter().map(|line| Block::QuestionAsTyped(line));

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::certificate::percent;
 use super::driven::values_in_words;
 use super::{Block, Document, Heading, in_powers_of, size_in_percent};
 use crate::decimal::{decimal, significant};
@@ -180,7 +181,7 @@ fn relations<'a>(slow: &SlowMotion) -> Vec<Vec<Block<'a>>> {
 
 /// Steady motions, or a motion, at values beside the true ones.
 fn beside_true_motions<'a>(slow: &SlowMotion, judged: &JudgedSlowMotion) -> Vec<Block<'a>> {
-    let within = size_in_percent(judged.tolerance);
+    let within = format!("{} %", percent(judged.tolerance));
     let verdict = judged
         .verdict
         .map(|verdict| ("verdict", format!("{} (error <= {within})", verdict.name())));

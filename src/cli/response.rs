@@ -22,7 +22,7 @@ use super::derive::{exact_values, formula, refused as refused_term};
 use super::problem::{coupled_equations, expression, problem};
 use super::progress::with_progress;
 use super::session;
-use super::walls::{ContactArguments, WallArguments};
+use super::walls::{ContactArguments, EventArguments, WallArguments};
 use super::{Common, Failure, Format, Outcome, Work, files, json_text, tolerance, values_of};
 
 /// Steady states of driven, self-excited or free oscillators, of one coordinate or coupled: every
@@ -61,6 +61,8 @@ pub struct ResponseArguments {
     #[command(flatten)]
     walls: WallArguments,
     #[command(flatten)]
+    events: EventArguments,
+    #[command(flatten)]
     contacts: ContactArguments,
     #[command(flatten)]
     pub common: Common,
@@ -93,11 +95,18 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
     }
     let is_coupled = equations.oscillator().is_none();
     let walls = arguments.walls.walls(&problem)?;
-    if !walls.is_empty() && (method != Method::HarmonicBalance || arguments.along.is_some()) {
-        return Err(Failure::Usage(
-            "--wall: motions with impacts are followed by shooting, in one parameter: leave out --method and --along"
-                .to_owned(),
-        ));
+    let events = arguments.events.events(&problem, &equations.states())?;
+    let option = match (walls.is_empty(), events.is_empty()) {
+        (true, true) => None,
+        (false, _) => Some("--wall"),
+        (true, false) => Some("--event"),
+    };
+    if let Some(option) = option
+        && (method != Method::HarmonicBalance || arguments.along.is_some())
+    {
+        return Err(Failure::Usage(format!(
+            "{option}: motions with impacts or events are followed by shooting, in one parameter: leave out --method and --along"
+        )));
     }
     if problem.resonance.is_some() && !(is_coupled && method == Method::MultipleScales) {
         return Err(Failure::because(
@@ -133,6 +142,7 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
         along,
         equations,
         walls,
+        events,
         values: exact_values(&arguments.at, problem.values_of_motion())?.unwrap_or_default(),
         parameter,
         range,
@@ -420,11 +430,15 @@ fn refused(error: ResponseError) -> Failure {
         ResponseError::CoupledJump(_) => Some(
             "make one of them smooth: (2/pi)*atan(100*x') for sgn(x')".to_owned(),
         ),
-        ResponseError::WallsWithoutDrive => Some(
-            "`lindstedt simulate` with --wall follows the motion to the cycle on which it settles".to_owned(),
+        ResponseError::EventsWithoutDamping => Some(
+            "`lindstedt simulate` follows one motion, with --wall and --event; with a drive or damping there are branches".to_owned(),
         ),
         ResponseError::RestsOnWall => Some(
             "`lindstedt simulate` with --wall follows it to rest and beyond; a larger coefficient of restitution or a stronger drive keeps it moving"
+                .to_owned(),
+        ),
+        ResponseError::EventsAccumulate => Some(
+            "`lindstedt simulate` with --event follows such a motion; events that bounce belong to a wall: --wall and --restitution"
                 .to_owned(),
         ),
         ResponseError::NothingMoves { .. } => Some("a stronger drive overcomes it".to_owned()),

@@ -8,7 +8,7 @@ use crate::report::{MotionSweep, TrajectoryReport};
 use crate::report::{event_in_words, section_in_words, wall_in_words};
 use crate::symbol::Symbol;
 use crate::trajectory::in_words;
-use crate::trajectory::{Crossing, PoincareSection, SweptMotion, Trajectory, TrajectoryRequest};
+use crate::trajectory::{PoincareSection, SweptMotion, Trajectory, TrajectoryRequest};
 
 /// Number of points of a table or a curve if no samples are requested.
 const POINTS: u32 = 2000;
@@ -93,21 +93,54 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
         states.extend(sides.into_iter().flatten().map(|state| (time, state)));
     }
     states.sort_by(|one, other| one.0.total_cmp(&other.0));
-    let in_time: Vec<Points> = (0..count)
-        .map(|index| states.iter().map(|(time, state)| (*time, state[index])).collect())
+    let column = |index: usize| states.iter().map(move |(_, state)| state[index]);
+    let times = || states.iter().map(|(time, _)| *time);
+    let in_time: Vec<Points> =
+        (0..count).map(|index| times().zip(column(index)).collect()).collect();
+    let planes = planes(course);
+    let in_plane: Vec<Points> = planes
+        .iter()
+        .map(|plane| column(plane.states[0]).zip(column(plane.states[1])).collect())
         .collect();
-    let planes: Vec<Points> = (0..count)
-        .map(|index| states.iter().map(|(_, state)| (state[index], state[count + index])).collect())
-        .collect();
-    let names: Vec<[String; 2]> =
-        course.coordinates.iter().map(|name| [name.to_string(), format!("{name}′")]).collect();
+    let line = |points| vec![curve("", points, CurveStyle::DIFFERENCE)];
     let mut panels = Vec::new();
-    for (name, (in_time, plane)) in names.iter().zip(in_time.iter().zip(&planes)) {
-        let line = |points| vec![curve("", points, CurveStyle::DIFFERENCE)];
-        panels.push(panel("Motion", ["time t", &name[0]], line(in_time), vec![]));
-        panels.push(panel("Phase plane", [&name[0], &name[1]], line(plane), vec![]));
+    for (index, (name, points)) in course.coordinates.iter().zip(&in_time).enumerate() {
+        panels.push(panel("Motion", ["time t", name.name()], line(points), vec![]));
+        let own = planes.iter().zip(&in_plane).filter(|(plane, _)| plane.states[0] == index);
+        for (plane, points) in own {
+            let [across, up] = &plane.names;
+            panels.push(panel("Phase plane", [across, up], line(points), vec![]));
+        }
     }
     figure(&panels, &format!("{}.", equations_in_words(course)))
+}
+
+/// Two states that are drawn over each other.
+struct Plane {
+    states: [usize; 2],
+    names: [String; 2],
+}
+
+/// Each coordinate with its velocity, and each coordinate of an equation of first order with the next one.
+fn planes(course: &TrajectoryRequest) -> Vec<Plane> {
+    let coordinates = &course.coordinates;
+    let is_first_order = |index: &usize| velocity_of(course, *index).is_none();
+    let of_first_order: Vec<usize> = (0..coordinates.len()).filter(is_first_order).collect();
+    let beside = of_first_order.windows(2).map(|pair| Plane {
+        states: [pair[0], pair[1]],
+        names: [pair[0], pair[1]].map(|index| coordinates[index].to_string()),
+    });
+    let with_velocity = coordinates.iter().enumerate().filter_map(|(index, name)| {
+        let velocity = velocity_of(course, index)?;
+        Some(Plane { states: [index, velocity], names: [name.to_string(), format!("{name}′")] })
+    });
+    with_velocity.chain(beside).collect()
+}
+
+/// The place of the velocity of a coordinate among the states; `None` for an equation of first order.
+fn velocity_of(course: &TrajectoryRequest, coordinate: usize) -> Option<usize> {
+    let velocity = course.coordinates[coordinate].derivative();
+    course.rates.states.iter().position(|state| *state == velocity)
 }
 
 /// The equations, the walls and the events of a problem, in words.
@@ -122,30 +155,39 @@ fn equations_in_words(course: &TrajectoryRequest) -> String {
     equations.chain(walls).chain(events).collect::<Vec<String>>().join(", ")
 }
 
-/// The states on a section: each coordinate with its velocity.
+/// The states on a section: each coordinate with its velocity, those of equations of first order with each
+/// other, and a single one of these over the time.
 fn on_section(motion: &Trajectory, section: &PoincareSection) -> Result<String, FigureError> {
     let course = &motion.course;
-    let count = course.coordinates.len();
-    let names: Vec<[String; 2]> =
-        course.coordinates.iter().map(|name| [name.to_string(), format!("{name}′")]).collect();
-    // At impacts the places are those of the walls: velocities are drawn over the time.
-    let at_impacts = *section == PoincareSection::Impacts;
-    let point = |index: usize| {
-        move |crossing: &Crossing| {
-            let across = if at_impacts { crossing.time } else { crossing.state[index] };
-            (across, crossing.state[count + index])
-        }
+    let crossings = motion.crossings();
+    let column = |index: usize| crossings.iter().map(move |crossing| crossing.state[index]);
+    let over_time = |index: usize| -> Points {
+        crossings.iter().map(|crossing| crossing.time).zip(column(index)).collect()
     };
-    let points: Vec<Points> =
-        (0..count).map(|index| motion.crossings().iter().map(point(index)).collect()).collect();
-    let panels: Vec<Panel> = names
-        .iter()
-        .zip(&points)
-        .map(|(name, points)| match at_impacts {
-            true => dots("Velocity before each impact", ["time t", &name[1]], points),
-            false => dots("Poincaré section", [&name[0], &name[1]], points),
-        })
-        .collect();
+    // At impacts the places are those of the walls: velocities are drawn over the time.
+    let drawn: Vec<([String; 2], Points)> = match (section, planes(course).as_slice()) {
+        (PoincareSection::Impacts, planes) => planes
+            .iter()
+            .map(|plane| (["time t".to_owned(), plane.names[1].clone()], plane.states[1]))
+            .map(|(names, state)| (names, over_time(state)))
+            .collect(),
+        (_, []) => (course.coordinates.iter().enumerate())
+            .map(|(index, name)| (["time t".to_owned(), name.to_string()], over_time(index)))
+            .collect(),
+        (_, planes) => planes
+            .iter()
+            .map(|plane| {
+                let [across, up] = plane.states;
+                (plane.names.clone(), column(across).zip(column(up)).collect())
+            })
+            .collect(),
+    };
+    let title = match section {
+        PoincareSection::Impacts => "Velocity before each impact",
+        _ => "Poincaré section",
+    };
+    let panels: Vec<Panel> =
+        drawn.iter().map(|([across, up], points)| dots(title, [across, up], points)).collect();
     figure(&panels, &format!("{}. {}", equations_in_words(course), section_in_words(section)))
 }
 
@@ -192,12 +234,18 @@ pub fn sweep_csv(sweep: &MotionSweep) -> String {
 pub fn sweep_picture(sweep: &MotionSweep) -> Result<String, FigureError> {
     let course = sweep.course;
     let varied = sweep.names.first().map_or("", |name| name.name());
-    let count = course.coordinates.len();
     // At impacts the places are those of the walls: velocities are drawn.
     let at_impacts = course.section == Some(PoincareSection::Impacts);
-    let points: Vec<Points> = (0..count)
-        .map(|index| {
-            let shown = if at_impacts { count + index } else { index };
+    let coordinates = 0..course.coordinates.len();
+    let shown: Vec<(usize, usize)> = match at_impacts {
+        true => {
+            coordinates.filter_map(|index| Some((index, velocity_of(course, index)?))).collect()
+        }
+        false => coordinates.map(|index| (index, index)).collect(),
+    };
+    let points: Vec<Points> = shown
+        .iter()
+        .map(|&(index, shown)| {
             let of = |motion: &SweptMotion| -> Points {
                 let value = motion.values.first().copied().unwrap_or(f64::NAN);
                 match course.section.is_some() {
@@ -214,8 +262,9 @@ pub fn sweep_picture(sweep: &MotionSweep) -> Result<String, FigureError> {
             sweep.motions.iter().flat_map(of).collect()
         })
         .collect();
-    let name = |name: &Symbol| if at_impacts { format!("{name}′") } else { name.to_string() };
-    let names: Vec<String> = course.coordinates.iter().map(name).collect();
+    let prime = if at_impacts { "′" } else { "" };
+    let names = shown.iter().map(|(index, _)| format!("{}{prime}", course.coordinates[*index]));
+    let names: Vec<String> = names.collect();
     let title = match course.section.is_some() {
         true if at_impacts => "Velocity before each impact",
         true => "States on the section",

@@ -5,7 +5,7 @@ mod coupled;
 
 use std::borrow::Cow;
 
-use super::trajectory::wall_in_words;
+use super::trajectory::{event_in_words, wall_in_words};
 use super::{Block, Document};
 use crate::decimal::{decimal, significant};
 use crate::derivation::DerivationLine;
@@ -65,6 +65,9 @@ fn question(response: &ResponseDiagram) -> Vec<Block<'static>> {
     let several = asked.walls.len() > 1;
     let walls = asked.walls.iter().enumerate();
     blocks.extend(walls.map(|(index, wall)| Block::Note(wall_in_words(index, wall, several))));
+    let several = asked.events.len() > 1;
+    let events = asked.events.iter().enumerate();
+    blocks.extend(events.map(|(index, event)| Block::Note(event_in_words(index, event, several))));
     let (name, [low, high]) = (asked.parameter, asked.range);
     if coupled::is_coupled(response) {
         blocks.extend(coupled::question(response));
@@ -104,6 +107,9 @@ fn method(response: &ResponseDiagram) -> &'static str {
     match (response.by_map, response.jumps) {
         (true, true) if !response.question.walls.is_empty() => {
             "the map of a period from impact to impact"
+        }
+        (true, true) if !response.question.events.is_empty() => {
+            "the map of a period from event to event"
         }
         (true, true) => "the map of a period from jump to jump of the force",
         (true, false) => "shooting, across the corners of the force",
@@ -248,7 +254,7 @@ fn branch(response: &ResponseDiagram, index: usize, branch: &Branch) -> Vec<Bloc
         )));
     }
     blocks.extend(sticking(response, branch));
-    blocks.extend(impacts(response, branch));
+    blocks.extend(impacts_and_events(response, branch));
     let ends = branch.ends.iter().zip([branch.points.first(), branch.points.last()]);
     let ends = ends.filter_map(|(end, point)| end_in_words(response, *end, point?));
     blocks.extend(ends.map(Block::Sentence));
@@ -301,22 +307,38 @@ fn end_in_words(
     })
 }
 
-/// The numbers of impacts in a period along a branch.
-fn impacts(response: &ResponseDiagram, branch: &Branch) -> Option<Block<'static>> {
+/// The numbers of impacts and of events in a period along a branch.
+fn impacts_and_events(response: &ResponseDiagram, branch: &Branch) -> Vec<Block<'static>> {
+    let question = &response.question;
+    let impacts: (_, _, fn(&SteadyMotion) -> usize) =
+        ("Impacts", question.walls.is_empty(), |point| point.impacts);
+    let events: (_, _, fn(&SteadyMotion) -> usize) =
+        ("Events", question.events.is_empty(), |point| point.events);
+    [impacts, events]
+        .into_iter()
+        .filter(|(_, is_absent, _)| !is_absent)
+        .map(|(what, _, count)| counts(response, branch, what, count))
+        .collect()
+}
+
+/// The numbers in a period of what a count counts, along a branch.
+fn counts(
+    response: &ResponseDiagram,
+    branch: &Branch,
+    what: &str,
+    count: fn(&SteadyMotion) -> usize,
+) -> Block<'static> {
     /// Largest number of listed parts.
     const MOST: usize = 6;
-    if response.question.walls.is_empty() {
-        return None;
-    }
     let name = response.question.parameter;
     let stretches: Vec<String> = branch
         .points
-        .chunk_by(|one, other| one.impacts == other.impacts)
+        .chunk_by(|one, other| count(one) == count(other))
         .map(|stretch| {
             let parameters = stretch.iter().map(|point| point.parameter);
             let low = parameters.clone().fold(f64::INFINITY, f64::min);
             let high = parameters.fold(f64::NEG_INFINITY, f64::max);
-            let count = match stretch[0].impacts {
+            let count = match count(&stretch[0]) {
                 0 => "none".to_owned(),
                 count => count.to_string(),
             };
@@ -324,10 +346,10 @@ fn impacts(response: &ResponseDiagram, branch: &Branch) -> Option<Block<'static>
         })
         .collect();
     let more = if stretches.len() > MOST { ", and so on" } else { "" };
-    Some(Block::Sentence(format!(
-        "Impacts in a period: {}{more}.",
+    Block::Sentence(format!(
+        "{what} in a period: {}{more}.",
         stretches[..stretches.len().min(MOST)].join(", ")
-    )))
+    ))
 }
 
 /// The parts of a branch on which dry friction holds the motion for a time.

@@ -213,6 +213,22 @@ fn a_clock_has_the_amplitude_of_its_escapement() {
     }
 }
 
+/// Modes with equations of their own are a coordinate that events set: a thermostat heats towards 3 up to 2 and
+/// cools towards 0 down to 1, log(2) each.
+#[test]
+fn modes_switch_where_their_conditions_come_true() {
+    let events = ["u > 2: m = 0", "u < 1: m = 1"];
+    let start = [("u", 1.5), ("m", 1.0)];
+    for integrator in BOTH {
+        let thermostat = course("u' = 3*m - u; m' = 0", &events, "", &start, 10.0);
+        let switched = times(&followed(&thermostat, integrator));
+        assert!(switched.len() > 10 && is_near(switched[0], 1.5_f64.ln(), 1e-12), "{switched:?}");
+        for pair in switched.windows(2) {
+            assert!(is_near(pair[1] - pair[0], 2.0_f64.ln(), 1e-12), "{pair:?}");
+        }
+    }
+}
+
 /// New values use the old ones: an exchange; the time and parameters stand in them as well.
 #[test]
 fn assignments_are_simultaneous() {

@@ -1,11 +1,15 @@
-//! Branches of motions with impacts against closed forms: the linear oscillator with a wall.
+//! Branches of motions with impacts and other events against closed forms: the linear oscillator with a
+//! wall, and the one that is kicked.
 
 use std::f64::consts::PI;
 
 use lindstedt::coupled::CoupledEquations;
+use lindstedt::event::StateEvent;
 use lindstedt::response::bifurcation::BifurcationKind;
 use lindstedt::response::continuation::BranchEnd;
-use lindstedt::response::{Equations, ResponseDiagram, ResponseRequest, SteadyMotion, respond};
+use lindstedt::response::{
+    Equations, ResponseDiagram, ResponseError, ResponseRequest, SteadyMotion, respond,
+};
 use lindstedt::verify::Verdict;
 use lindstedt::wall::Wall;
 
@@ -27,9 +31,10 @@ fn question(
     ResponseRequest { walls: walls.iter().flat_map(wall).collect(), ..request }
 }
 
-/// The points with one impact in a period.
+/// The points with one impact or event in a period.
 fn with_one_impact(found: &ResponseDiagram) -> impl Iterator<Item = &SteadyMotion> {
-    found.branches.iter().flat_map(|branch| &branch.points).filter(|point| point.impacts == 1)
+    let points = found.branches.iter().flat_map(|branch| &branch.points);
+    points.filter(|point| point.impacts + point.events == 1)
 }
 
 /// The orbits with one impact in n periods of `x'' + c x' + k x = F cos(w t)`, x < d: both roots of the
@@ -71,42 +76,148 @@ impl Closed {
     }
 }
 
+/// The request with events in place of its walls.
+fn with_events(asked: &ResponseRequest, events: &[&str]) -> ResponseRequest {
+    let states = asked.equations.states();
+    let events = events.iter().map(|text| StateEvent::parse(text, &states).expect(text));
+    ResponseRequest { walls: vec![], events: events.collect(), ..asked.clone() }
+}
+
 /// Every point with one impact has the speed of the closed form, and the multipliers e^2 exp(-c T) for
-/// their product.
+/// their product; and so has every point where the impact is an event.
 #[test]
 fn one_impact_a_period_has_its_closed_form() {
-    let asked = question("x'' + x'/10 + x = F*cos(t)", &[("x < 1", "4/5")], ("F", [0.3, 1.2]), "");
+    let wall = question("x'' + x'/10 + x = F*cos(t)", &[("x < 1", "4/5")], ("F", [0.3, 1.2]), "");
+    let closed = Closed { c: 0.1, k: 1.0, w: 1.0, d: 1.0, e: 0.8, periods: 1.0 };
+    for asked in [with_events(&wall, &["x > 1: x' = -4/5*x'"]), wall] {
+        let found = respond(&asked).expect("a response");
+        assert_eq!(found.verdict, Verdict::Pass, "{:?}", found.error);
+        let mut compared = 0;
+        for point in with_one_impact(&found) {
+            // The speed before the impact from the motion itself: one wall, one period.
+            let speed = speed_of(&asked, point);
+            let near = closed.speeds(point.parameter).into_iter();
+            let near = near.map(|v| (v - speed).abs()).fold(f64::INFINITY, f64::min);
+            assert!(near < 1e-7 * speed, "F = {}: {speed}", point.parameter);
+            let [one, other] = point.multipliers.expect("multipliers");
+            let product = (one * other).re;
+            let expected = 0.64 * (-0.1 * 2.0 * PI).exp();
+            assert!((product - expected).abs() < 1e-7, "F = {}: {product}", point.parameter);
+            compared += 1;
+        }
+        assert!(compared > 10, "{compared}");
+    }
+}
+
+/// x'' + c x' + x = 0 with a kick p in each period: y = E (y + (0, p)), E = exp(A T).
+#[test]
+fn kicks_have_their_closed_form() {
+    let request = question("x'' + x'/5 + x = 0", &[], ("w", [0.6, 2.3]), "p = 1/2");
+    let asked = with_events(&request, &["sin(w*t) > 0: x' = x' + p"]);
+    let found = respond(&asked).expect("a response");
+    assert_eq!((found.verdict, found.branches.len()), (Verdict::Pass, 1), "{:?}", found.error);
+    for point in &found.branches[0].points {
+        let (beta, time) = (0.1_f64, 2.0 * PI / point.parameter);
+        let rate = (1.0 - beta * beta).sqrt();
+        let (sin, cos) = (rate * time).sin_cos();
+        let decay = (-beta * time).exp();
+        let [a, b] = [decay * (cos + beta / rate * sin), decay * sin / rate];
+        let [c, d] = [-decay * sin / rate, decay * (cos - beta / rate * sin)];
+        // (1 - E) y = E (0, p).
+        let determinant = (1.0 - a) * (1.0 - d) - b * c;
+        let x = 0.5 * ((1.0 - d) * b + b * d) / determinant;
+        let v = 0.5 * (c * b + (1.0 - a) * d) / determinant;
+        let [own_x, own_v] = point.start;
+        let apart = (own_x - x).abs().max((own_v - v).abs());
+        assert!(apart < 1e-9, "w = {}: {own_x} {own_v}, {x} {v}", point.parameter);
+        let [one, other] = point.multipliers.expect("multipliers");
+        assert!(((one * other).re - decay * decay).abs() < 1e-7);
+        assert_eq!((point.impacts, point.events, point.stable), (0, 1, Some(true)));
+    }
+}
+
+/// A motion that loses speed at each passage through zero, in either direction: the events are passed, not
+/// bounced off, and the motion is that of its own series.
+#[test]
+fn events_on_both_sides_are_passed() {
+    let request = question("x'' + x'/50 + x + x^3 = F*cos(6*t/5)", &[], ("F", [0.2, 0.6]), "");
+    let asked = with_events(&request, &["x = 0: x' = 9/10*x'"]);
     let found = respond(&asked).expect("a response");
     assert_eq!(found.verdict, Verdict::Pass, "{:?}", found.error);
-    let closed = Closed { c: 0.1, k: 1.0, w: 1.0, d: 1.0, e: 0.8, periods: 1.0 };
-    let mut compared = 0;
-    for point in with_one_impact(&found) {
-        // The speed before the impact from the motion itself: one wall, one period.
-        let speed = speed_of(&asked, point);
-        let near = closed.speeds(point.parameter).into_iter();
-        let near = near.map(|v| (v - speed).abs()).fold(f64::INFINITY, f64::min);
-        assert!(near < 1e-7 * speed, "F = {}: {speed}", point.parameter);
+    let points = || found.branches.iter().flat_map(|branch| &branch.points);
+    assert!(points().count() > 10 && points().all(|point| point.events == 2));
+    for point in points() {
+        // det M: the loss of both events, each with the speed over that before on its own normal.
         let [one, other] = point.multipliers.expect("multipliers");
-        let product = (one * other).re;
-        let expected = 0.64 * (-0.1 * 2.0 * PI).exp();
-        assert!((product - expected).abs() < 1e-7, "F = {}: {product}", point.parameter);
-        compared += 1;
+        let determinant = 0.9_f64.powi(4) * (-0.02 * 2.0 * PI / 1.2).exp();
+        assert!(((one * other).re - determinant).abs() < 1e-7, "F = {}", point.parameter);
     }
-    assert!(compared > 10, "{compared}");
+}
+
+/// A pendulum clock: a kick p each time the middle is passed upwards. With viscous damping the speed behind
+/// the kick is p/(1 - exp(-zeta T)); with dry friction f, where the kick adds p^2 to the square of the speed,
+/// the motion turns at p^2/(8 f) + f and f - p^2/(8 f) (Andronov, Vitt and Khaikin, chapter 3).
+#[test]
+fn clocks_have_their_closed_form() {
+    let viscous = question("x'' + 2*zeta*x' + x = 0", &[], ("zeta", [0.02, 0.2]), "p = 1/2");
+    let found = respond(&with_events(&viscous, &["x > 0: x' = x' + p"])).expect("a response");
+    assert_eq!((found.verdict, found.branches.len()), (Verdict::Pass, 1), "{:?}", found.error);
+    for point in &found.branches[0].points {
+        let zeta = point.parameter;
+        let frequency = (1.0 - zeta * zeta).sqrt();
+        let decay = (-zeta * 2.0 * PI / frequency).exp();
+        assert!((point.frequency - frequency).abs() < 1e-9, "zeta = {zeta}: {}", point.frequency);
+        let [one, other] = point.multipliers.expect("multipliers");
+        let apart = (one - decay).norm().min((other - decay).norm());
+        assert!(apart < 1e-8 && point.stable == Some(true), "zeta = {zeta}: {one} {other}");
+        // The turns after the time in which tan(wd t) = wd/zeta, above and half a period later.
+        let turn = frequency.atan2(zeta) / frequency;
+        let highest = (-zeta * turn).exp() * 0.5 / (1.0 - decay);
+        let peak = 0.5 * highest * (1.0 + decay.sqrt());
+        assert!((point.peak - peak).abs() < 1e-8 * peak, "zeta = {zeta}: {} {peak}", point.peak);
+    }
+    let dry = question("x'' + f*sgn(x') + x = 0", &[], ("f", [0.02, 0.06]), "p = 3/10");
+    let found = respond(&with_events(&dry, &["x > 0: x' = sqrt(x'^2 + p^2)"])).expect("a response");
+    assert_eq!((found.verdict, found.branches.len()), (Verdict::Pass, 1), "{:?}", found.error);
+    for point in &found.branches[0].points {
+        let f = point.parameter;
+        let peak = 0.09 / (8.0 * f);
+        // Friction turns round where the motion does: the highest point is that of a curve with a corner
+        // in its second derivative.
+        assert!((point.peak - peak).abs() < 1e-6, "f = {f}: {} {peak}", point.peak);
+    }
+    // Without damping there is no cycle but families of motions.
+    let free = question("x'' + w^2*x = 0", &[("x < 1", "1")], ("w", [1.0, 2.0]), "");
+    let refused = respond(&free).expect_err("a family");
+    assert!(matches!(refused, ResponseError::EventsWithoutDamping), "{refused}");
+}
+
+/// An event that sets a state past the condition of another one is not followed, and this is said.
+#[test]
+fn events_at_once_are_refused() {
+    let request = question("x'' + x'/5 + x = F*cos(t)", &[], ("F", [1.0, 2.0]), "");
+    let asked = with_events(&request, &["x > 1: x = 3", "x > 2: x' = 0"]);
+    let refused = respond(&asked).expect_err("two events at once");
+    assert!(matches!(refused, ResponseError::EventsAccumulate), "{refused}");
 }
 
 /// The speed before the first impact of a steady motion.
 fn speed_of(asked: &ResponseRequest, point: &SteadyMotion) -> f64 {
     use lindstedt::trajectory::TrajectoryRequest;
     let equations = CoupledEquations::new(asked.equations.sides()).unwrap();
-    let mut course = TrajectoryRequest::of_coupled(&equations).with_walls(asked.walls.clone());
+    let mut course = TrajectoryRequest::of_coupled(&equations)
+        .with_walls(asked.walls.clone())
+        .with_events(asked.events.clone());
     course.values = asked.values.numbers();
     course.values.insert(asked.parameter, point.parameter);
     course.start = point.start.to_vec();
     course.duration = 2.0 * PI / point.frequency;
     let motion = course.follow().expect("a motion");
     assert_eq!(motion.walls.impacts.len(), point.impacts);
-    motion.walls.impacts[0].speed
+    match motion.walls.impacts.first() {
+        Some(impact) => impact.speed,
+        None => motion.events.occurrences[0].before[1],
+    }
 }
 
 /// The amplitude of the free motion reaches the wall at X = d: there the branch grazes.

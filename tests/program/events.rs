@@ -20,8 +20,9 @@ fn printed(arguments: &[&str]) -> String {
 }
 
 /// The command in the comment of each example.
-const EXAMPLES: [&[&str]; 3] = [
+const EXAMPLES: [&[&str]; 4] = [
     &["simulate", "examples/events/clock.toml", "--from", "x=-1", "--until", "100"],
+    &["simulate", "examples/events/hopper.toml", "--from", "y=1.5", "--until", "6"],
     &["simulate", "examples/events/integrate-and-fire.toml", "--from", "v=0", "--until", "30"],
     &["simulate", "examples/events/stick-slip.toml", "--from", "x'=0.2", "--until", "60"],
 ];
@@ -66,6 +67,48 @@ fn a_document_has_its_events() {
     assert_eq!(document["events"]["occurrences"][0]["energy_lost"].as_f64(), Some(1.5));
     assert_eq!(document["energy"]["works"]["events"].as_f64(), Some(-1.5));
     assert_eq!(document["complete"], true);
+}
+
+/// Equations of first order have pictures too: over the time, and each over the one before.
+#[test]
+fn states_without_velocities_are_drawn() {
+    let pictured = |arguments: &[&str]| {
+        let text = printed(&[arguments, &["--plot", "-"]].concat());
+        assert!(text.contains("<svg"), "{arguments:?}");
+        text
+    };
+    let modes = ["simulate", "u' = 3*m - u; m' = 0", "--from", "u=1,m=1", "--until", "5"];
+    let events = ["--event", "u > 2: m = 0", "--event", "u < 1: m = 1"];
+    for more in [&[][..], &["--section", "events"]] {
+        let text = pictured(&[&modes[..], &events, more].concat());
+        let title = if more.is_empty() { "Phase plane" } else { "Poincaré section" };
+        assert_eq!(text.matches(&format!(">{title}<")).count(), 1, "{text}");
+    }
+    // One state, and one before a coordinate that has a velocity.
+    let neuron = ["simulate", "v' = 3/2 - v", "--event", "v > 1: v = 0", "--until", "5"];
+    assert!(!pictured(&neuron).contains("Phase plane"));
+    pictured(&[&neuron[..], &["--section", "events"]].concat());
+    let mixed = ["simulate", "m' = x - m; x'' + x = 0", "--from", "x=1", "--until", "5"];
+    assert_eq!(pictured(&mixed).matches(">Phase plane<").count(), 1);
+}
+
+/// Steady motions of a kicked oscillator: one event in a period, in text and document.
+#[test]
+fn a_response_has_its_events() {
+    let kicked = ["response", "x'' + x'/5 + x = 0", "--event", "sin(w*t) > 0: x' = x' + 1/2"];
+    let vary = ["--vary", "w=0.9:1.1"];
+    let text = printed(&[&kicked[..], &vary].concat());
+    for words in ["event where sin(w*t) grows through zero", "Events in a period: 1 from w = 0.9"] {
+        assert!(text.contains(words), "{text}");
+    }
+    let text = printed(&[&kicked[..], &vary, &["--format", "json"]].concat());
+    let document: Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(document["events"][0]["set"]["x'"], "x' + 1/2");
+    let counts = document["event_counts"][0].as_array().expect("counts");
+    assert!(counts.len() > 5 && counts.iter().all(|count| count == 1));
+    let refused = run(&[&kicked[..], &vary, &["--along", "c=0.1:0.3"]].concat());
+    let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(message.contains("--event: motions with impacts or events"), "{message}");
 }
 
 /// A bifurcation diagram of a kicked oscillator: a row for each state just before a kick.

@@ -8,7 +8,9 @@
 //! (R. Goebel, R. G. Sanfelice, A. R. Teel, *Hybrid Dynamical Systems*, Princeton 2012, chapters 1 and 2.)
 //! A rigid [wall](crate::wall) is an event with the law of impact as its reset, on which a motion may also rest.
 
-use crate::expr::{Assignments, Expr, ParseError, parse_event};
+use std::collections::BTreeMap;
+
+use crate::expr::{Assignments, Expr, ExprError, ParseError, parse_event};
 use crate::symbol::Symbol;
 
 /// An event of a motion.
@@ -48,6 +50,20 @@ impl StateEvent {
     pub fn condition(&self) -> String {
         let way = if self.both_ways { "passes" } else { "grows" };
         format!("{} {way} through zero", self.guard)
+    }
+
+    /// Returns the event with expressions in place of parameters.
+    ///
+    /// # Errors
+    /// [`ExprError`] for a value without a meaning there, such as a division by zero.
+    pub fn substitute_all(&self, values: &BTreeMap<Symbol, Expr>) -> Result<Self, ExprError> {
+        let set = self.assignments.iter();
+        let set = set.map(|(state, value)| Ok((*state, value.substitute_all(values)?)));
+        Ok(Self {
+            guard: self.guard.substitute_all(values)?,
+            both_ways: self.both_ways,
+            assignments: set.collect::<Result<_, _>>()?,
+        })
     }
 
     /// The expressions of the event, in which parameters may stand.

@@ -241,11 +241,6 @@ pub struct EventOccurrenceDocument {
 impl EventsDocument {
     fn new(motion: &Trajectory) -> Self {
         let course = &motion.course;
-        let event = |event: &StateEvent| EventDocument {
-            guard: event.guard.to_string(),
-            both_ways: event.both_ways,
-            set: named(event.assignments.iter().map(|(state, value)| (state, value.to_string()))),
-        };
         let occurrence = |event: &EventOccurrence| EventOccurrenceDocument {
             t: event.time,
             event: event.event,
@@ -254,9 +249,19 @@ impl EventsDocument {
             energy_lost: event.loss,
         };
         Self {
-            events: course.events.iter().map(event).collect(),
+            events: course.events.iter().map(EventDocument::new).collect(),
             occurrences: motion.events.occurrences.iter().map(occurrence).collect(),
             order_matters: motion.events.order_matters,
+        }
+    }
+}
+
+impl EventDocument {
+    pub(super) fn new(event: &StateEvent) -> Self {
+        Self {
+            guard: event.guard.to_string(),
+            both_ways: event.both_ways,
+            set: named(event.assignments.iter().map(|(state, value)| (state, value.to_string()))),
         }
     }
 }

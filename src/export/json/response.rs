@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::DocumentKind;
-use super::motion::WallDocument;
+use super::motion::{EventDocument, WallDocument};
 use super::number::{Constant, Map, constants, is_nothing, meanings};
 use crate::report::{listed_quantity, motion_frequency};
 use crate::response::slow::{SlowEquations, SlowResponse};
@@ -65,6 +65,12 @@ pub struct ResponseDocument {
     /// The number of impacts in a period at each point of a branch; left out without a wall.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub impacts: Vec<Vec<usize>>,
+    /// The events, as `--event` takes them; left out without one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub events: Vec<EventDocument>,
+    /// The number of events in a period at each point of a branch; left out without an event.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub event_counts: Vec<Vec<usize>>,
     /// Where branches change.
     pub bifurcations: Vec<response::Bifurcation>,
     /// The equilibria of coupled equations that nothing drives, a branch each. Left out where there
@@ -273,11 +279,20 @@ fn point(point: &response::SteadyMotion) -> ResponsePoint {
     }
 }
 
-/// The part of a period that each point of a branch sticks; nothing for one that never does.
-fn impacts(branch: &response::Branch) -> Vec<usize> {
-    branch.points.iter().map(|point| point.impacts).collect()
+/// A number at each point of the branches; nothing where there is nothing to be counted.
+fn counts(
+    response: &ResponseDiagram,
+    is_counted: bool,
+    count: fn(&response::SteadyMotion) -> usize,
+) -> Vec<Vec<usize>> {
+    let of_branch = |branch: &response::Branch| branch.points.iter().map(count).collect();
+    match is_counted {
+        true => response.branches.iter().map(of_branch).collect(),
+        false => vec![],
+    }
 }
 
+/// The part of a period that each point of a branch sticks; nothing for one that never does.
 fn stuck(branch: &response::Branch) -> Vec<f64> {
     match branch.points.iter().any(|point| point.stuck > 0.0) {
         true => branch.points.iter().map(|point| point.stuck).collect(),
@@ -328,11 +343,10 @@ pub fn response(response: &ResponseDiagram) -> ResponseDocument {
             .collect(),
         mirrored: response.branches.iter().map(|branch| branch.mirrored).collect(),
         stuck: response.branches.iter().map(stuck).collect(),
-        walls: response.question.walls.iter().map(WallDocument::new).collect(),
-        impacts: match response.question.walls.is_empty() {
-            true => vec![],
-            false => response.branches.iter().map(impacts).collect(),
-        },
+        walls: asked.walls.iter().map(WallDocument::new).collect(),
+        impacts: counts(response, !asked.walls.is_empty(), |point| point.impacts),
+        events: asked.events.iter().map(EventDocument::new).collect(),
+        event_counts: counts(response, !asked.events.is_empty(), |point| point.events),
         bifurcations: response.bifurcations.clone(),
         equilibria: response.equilibria.clone(),
         along: asked.along.map(|(name, _)| name.to_string()),

@@ -302,6 +302,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("response", driven[1..].to_vec(), vec!["--along", "F=0.1:0.3"]),
         ("response", driven[1..].to_vec(), vec!["--wall", "x < 9", "--restitution", "1/2"]),
         ("response", driven[1..].to_vec(), vec!["--restitution", "1/2"]),
+        ("response", driven[1..].to_vec(), vec!["--event", "x > 0: x' = x'/2"]),
         ("response", driven[1..].to_vec(), vec!["--contact", "x < 9: hertz K=1"]),
         ("response", driven[1..].to_vec(), vec!["--format", "csv"]),
         ("response", driven[1..].to_vec(), vec!["--format", "latex"]),

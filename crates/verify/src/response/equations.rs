@@ -72,6 +72,16 @@ impl Equations {
         }
     }
 
+    /// The coordinates, then the velocities of those whose equations are of second order.
+    pub fn states(&self) -> Vec<Symbol> {
+        match self {
+            Self::One(oscillator) => {
+                vec![oscillator.coordinate, oscillator.coordinate.derivative()]
+            }
+            Self::Coupled(equations) => equations.rates.states.clone(),
+        }
+    }
+
     /// The names that need values, in alphabetical order.
     pub fn parameters(&self) -> &[Symbol] {
         match self {

@@ -157,11 +157,16 @@ pub enum ResponseError {
     /// No motion could be followed over a period because it comes to rest on a wall.
     #[error("no motion was found that does not come to rest on a wall within a period")]
     RestsOnWall,
-    /// Walls in equations that nothing drives.
+    /// No motion could be followed over a period because events accumulate, or take place at once.
     #[error(
-        "branches of motions with impacts are followed where something drives the motion: time `t` does not occur in the equations"
+        "no motion was found whose events are apart: within a period they accumulate, or one sets a state past the condition of another"
     )]
-    WallsWithoutDrive,
+    EventsAccumulate,
+    /// Walls or events in equations that nothing drives and nothing damps.
+    #[error(
+        "branches of motions with impacts or events are followed where something drives or damps the motion between them"
+    )]
+    EventsWithoutDamping,
     /// A bound that is not a wall.
     #[error(transparent)]
     Wall(#[from] WallError),

@@ -227,6 +227,7 @@ impl PreparedRequest<'_> {
             multipliers: floquet.map(|floquet| floquet.multipliers()),
             stuck: truth.map_or(0.0, |truth| truth.stuck),
             impacts: 0,
+            events: 0,
             error,
             coordinates: vec![],
             energy: None,

@@ -71,6 +71,7 @@ use std::collections::BTreeSet;
 use num_complex::Complex;
 
 use crate::coupled::CoupledEquations;
+use crate::event::StateEvent;
 use crate::exact::rational::from_f64;
 use crate::expr::Expr;
 use crate::interrupt::{Interrupt, Progress};
@@ -100,6 +101,8 @@ pub struct ResponseRequest {
     pub of: Option<Expr>,
     /// Rigid walls, of coupled equations, of which one coordinate may be an example.
     pub walls: Vec<Wall>,
+    /// Other events at which states jump.
+    pub events: Vec<StateEvent>,
     /// Exact values of all parameters but the one that varies.
     pub values: Values,
     /// The parameter that varies.
@@ -150,6 +153,8 @@ pub struct SteadyMotion {
     pub stuck: f64,
     /// The number of impacts on walls in a period.
     pub impacts: usize,
+    /// The number of other events in a period.
+    pub events: usize,
     /// The error of amplitude or peak against the true motion that shooting found, the larger, over
     /// the true peak, or that of the frequency, over the true one, if that is larger; `None` if
     /// shooting found no motion near.
@@ -497,8 +502,8 @@ pub fn respond(question: &ResponseRequest) -> Result<ResponseDiagram, ResponseEr
     let question = &question.with_second_value()?;
     match &question.equations {
         Equations::Coupled(equations) => coupled::respond(question, equations),
-        // Across impacts one coordinate is followed as several are.
-        Equations::One(_) if !question.walls.is_empty() => {
+        // Across impacts and events one coordinate is followed as several are.
+        Equations::One(_) if question.has_jumps_of_states() => {
             let equations = CoupledEquations::new(question.equations.sides())
                 .map_err(|error| ResponseError::Rates(error.to_string()))?;
             coupled::respond(question, &equations)
@@ -661,14 +666,24 @@ impl ResponseRequest {
         Self { values, ..self.clone() }
     }
 
-    /// The names of the equations and the walls that need values, in alphabetical order.
+    /// Whether states jump, at walls or other events.
+    pub fn has_jumps_of_states(&self) -> bool {
+        !self.walls.is_empty() || !self.events.is_empty()
+    }
+
+    /// The expressions of the walls and the events.
+    fn of_jumps(&self) -> impl Iterator<Item = &Expr> {
+        let of_walls = self.walls.iter().flat_map(|wall| [&wall.gap, &wall.restitution]);
+        of_walls.chain(self.events.iter().flat_map(StateEvent::expressions))
+    }
+
+    /// The names of the equations, the walls and the events that need values, in alphabetical order.
     pub fn parameters(&self) -> Vec<Symbol> {
         let coordinates = self.equations.coordinates();
-        let of_walls = self.walls.iter().flat_map(|wall| [&wall.gap, &wall.restitution]);
         let is_own = |name: &Symbol| coordinates.contains(&name.coordinate()) || name.name() == "t";
-        let of_walls = of_walls.flat_map(Expr::symbols).filter(|name| !is_own(name));
+        let of_jumps = self.of_jumps().flat_map(Expr::symbols).filter(|name| !is_own(name));
         let all: BTreeSet<Symbol> =
-            self.equations.parameters().iter().copied().chain(of_walls).collect();
+            self.equations.parameters().iter().copied().chain(of_jumps).collect();
         all.into_iter().collect()
     }
 
@@ -749,6 +764,7 @@ impl ResponseRequest {
             of: None,
             along: None,
             walls: vec![],
+            events: vec![],
             values: values.parse()?,
             parameter: Symbol::new(parameter),
             range,

@@ -365,7 +365,7 @@ impl CoupledProblem<'_> {
             OrbitBranchEnd::Refused if self.is_exhausted() => BranchEnd::Points,
             OrbitBranchEnd::Refused if self.rests.get() => BranchEnd::Held,
             OrbitBranchEnd::Refused
-                if last[side].is_some_and(|point| !point.kept.places.is_empty()) =>
+                if last[side].is_some_and(|point| !point.kept.encounters.places.is_empty()) =>
             {
                 BranchEnd::Lost
             }
@@ -384,7 +384,7 @@ impl CoupledProblem<'_> {
         const NEARLY_ALL: f64 = 0.99;
         const NEAR_ONE: f64 = 1e-4;
         let near_one = |value: &Complex<f64>| (value - Complex::from(1.0)).norm() < NEAR_ONE;
-        orbit.kept.stuck > NEARLY_ALL
+        orbit.kept.encounters.stuck > NEARLY_ALL
             && self.multipliers(orbit).is_some_and(|all| all.iter().any(near_one))
     }
 
@@ -393,7 +393,7 @@ impl CoupledProblem<'_> {
         /// Size of a gap, or of the speed of an impact, relative to those of the motion, near a wall.
         const NEAR: f64 = 0.02;
         const SLOW: f64 = 0.1;
-        if self.walls.is_empty() {
+        if !self.question.has_jumps_of_states() {
             return None;
         }
         let flow = self.in_phase.as_ref().unwrap_or(&self.in_time);
@@ -402,8 +402,8 @@ impl CoupledProblem<'_> {
         if flow.least_gap(start, orbit.parameter(), &sizes) < NEAR * NEAR {
             return Some(BranchEnd::ImpactAtStart);
         }
-        if orbit.kept.impacts > 0 {
-            return (orbit.kept.slowest < SLOW).then_some(BranchEnd::Grazing);
+        if orbit.kept.encounters.counts() != [0, 0] {
+            return (orbit.kept.encounters.slowest < SLOW).then_some(BranchEnd::Grazing);
         }
         const PLACES: usize = 256;
         let period = std::f64::consts::TAU / self.frequency_of(orbit);
@@ -416,32 +416,36 @@ impl CoupledProblem<'_> {
                 self.states.iter().copied().zip(states.iter().copied()).chain(numbers).collect();
             values.insert(crate::symbol::Symbol::new("t"), time);
             let size = sizes[..self.coordinates].iter().copied().fold(0.0, f64::max);
-            let gap = |wall: &Wall| wall.gap.evaluate(&values).unwrap_or(f64::INFINITY);
-            self.walls.iter().any(|wall| gap(wall) < NEAR * size)
+            let is_near =
+                |gap: &Expr| gap.evaluate(&values).is_ok_and(|gap| gap.abs() < NEAR * size);
+            let walls = self.walls.iter().map(|wall| &wall.gap);
+            walls.chain(self.events.iter().map(|event| &event.guard)).any(is_near)
         };
         (0..PLACES).any(is_near).then_some(BranchEnd::Grazing)
     }
 
-    /// The start of an orbit, and that behind an impact at its beginning.
+    /// The start of an orbit, and that behind an event at its beginning.
     fn starts_at_wall(&self, orbit: &Orbit) -> Vec<Vec<f64>> {
         let flow = self.in_phase.as_ref().unwrap_or(&self.in_time);
         let start = orbit.start()[..self.states.len()].to_vec();
-        let behind = flow.behind_impact(&start, orbit.parameter());
+        let behind = flow.behind_event(&start, orbit.parameter());
         [Some(start), behind].into_iter().flatten().collect()
     }
 
-    /// Whether the mirror image of every wall is a wall, so that the mirror image of a motion is one.
+    /// Whether the mirror image of every wall is a wall, so that the mirror image of a motion is one; with
+    /// other events that is not looked for.
     fn walls_are_mirrored(&self) -> bool {
         let mirror = self.states[..self.coordinates].iter().map(|name| (*name, -Expr::from(*name)));
         let mirror = mirror.collect();
-        self.walls.iter().all(|wall| {
-            let Ok(gap) = wall.gap.substitute_all(&mirror) else { return false };
-            let same =
-                |other: &Wall| (&gap - &other.gap).expand().is_ok_and(|apart| apart.is_zero());
-            let mut others = self.walls.iter();
-            !gap.contains(crate::symbol::Symbol::new("t"))
-                && others.any(|other| other.restitution == wall.restitution && same(other))
-        })
+        self.events.is_empty()
+            && self.walls.iter().all(|wall| {
+                let Ok(gap) = wall.gap.substitute_all(&mirror) else { return false };
+                let same =
+                    |other: &Wall| (&gap - &other.gap).expand().is_ok_and(|apart| apart.is_zero());
+                let mut others = self.walls.iter();
+                !gap.contains(crate::symbol::Symbol::new("t"))
+                    && others.any(|other| other.restitution == wall.restitution && same(other))
+            })
     }
 
     /// Follows the branches on the other side of the grazing at which known ones end, where there is an
@@ -582,7 +586,8 @@ impl CoupledProblem<'_> {
         // Cycles may begin anywhere on themselves: they are compared by travel and period.
         let by_travel = matches!(self.kind, Kind::SelfExcited | Kind::Free);
         // A motion that dry friction holds at a place has its mirror image at another.
-        let signs: &[f64] = if orbit.kept.places.is_empty() { &[1.0] } else { &[1.0, -1.0] };
+        let signs: &[f64] =
+            if orbit.kept.encounters.places.is_empty() { &[1.0] } else { &[1.0, -1.0] };
         for (branch, path) in known.branches.iter().enumerate() {
             let pairs = path.orbits.windows(2);
             for (pair, sign) in pairs.flat_map(|pair| signs.iter().map(move |sign| (pair, *sign))) {
@@ -595,7 +600,7 @@ impl CoupledProblem<'_> {
                 let mut guess = &from.unknowns + (&to.unknowns - &from.unknowns) * part;
                 let count = guess.len() - 1;
                 // Where dry friction holds a motion it may hold it at another place.
-                for factors in &orbit.kept.places {
+                for factors in &orbit.kept.encounters.places {
                     let of_place = |state: &[f64]| -> f64 {
                         state.iter().zip(factors).map(|(value, factor)| value * factor).sum()
                     };

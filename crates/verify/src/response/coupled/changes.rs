@@ -49,7 +49,7 @@ impl CoupledProblem<'_> {
             Kind::SelfExcited => 1,
             Kind::Free => 2,
         };
-        for _ in 0..trivial + orbit.kept.places.len() {
+        for _ in 0..trivial + orbit.kept.encounters.places.len() {
             let from_one = |value: &Complex<f64>| (value - Complex::from(1.0)).norm();
             let nearest = (0..all.len())
                 .min_by(|one, other| from_one(&all[*one]).total_cmp(&from_one(&all[*other])))?;
@@ -106,7 +106,7 @@ pub(super) fn changes_between(
     use BifurcationKind::{BranchPoint, Fold, NeimarkSacker, PeriodDoubling};
     let mut found: Vec<(BifurcationKind, Orbit)> = Vec::new();
     // Across a grazing the multipliers jump, and pass nothing.
-    if from.kept.impacts != to.kept.impacts {
+    if from.kept.encounters.counts() != to.kept.encounters.counts() {
         let at = grazing_between(orbits, from, to);
         return at.map(|orbit| (BifurcationKind::Grazing, orbit)).into_iter().collect();
     }
@@ -131,7 +131,7 @@ fn grazing_between(orbits: &Orbits, from: &Orbit, to: &Orbit) -> Option<Orbit> {
         let middle = 0.5 * (low + high);
         let orbit = orbits.between(from, to, middle);
         match orbit {
-            Some(orbit) if orbit.kept.impacts == from.kept.impacts => {
+            Some(orbit) if orbit.kept.encounters.counts() == from.kept.encounters.counts() => {
                 (low, nearest) = (middle, orbit);
             }
             _ => high = middle,

@@ -27,7 +27,11 @@ impl CoupledProblem<'_> {
         let [low, high] = self.question.range;
         let [values, starts] = SEARCH;
         self.question.progress.begin(values);
-        let (mut equilibria, hopf) = self.equilibria();
+        // What is at rest behind a wall, or on the condition of an event, is not at rest.
+        let (mut equilibria, hopf) = match self.question.has_jumps_of_states() {
+            true => Default::default(),
+            false => self.equilibria(),
+        };
         let mut known = Known::default();
         for point in &hopf {
             if let Some((orbit, anchor)) = self.small_cycle(point) {

@@ -17,7 +17,7 @@ use std::cell::{Cell, RefCell};
 use nalgebra::{DMatrix, DVector};
 
 use super::sliding::{self, SlidingRun, SlidingStop};
-use super::surfaces::{FlowWall, JumpSurfaces};
+use super::surfaces::{FlowEvent, JumpSurfaces};
 use crate::expr::{CompiledList, Expr};
 use crate::interrupt::Interrupt;
 use crate::numeric::ode::{IntegrationOptions, Point, end_values};
@@ -54,8 +54,8 @@ pub(super) struct Flow {
     interrupt: Interrupt,
     /// The reason why the last motion that was not followed across jumps was not.
     stopped: Cell<Option<SlidingStop>>,
-    /// Whether a motion came to rest on a wall.
-    rested: Cell<bool>,
+    /// The reason why a motion ended at an event, if one did.
+    ended: Cell<Option<SlidingStop>>,
     /// The evaluations of the right sides so far, each counted as often as there are motions and variations.
     evaluations: Cell<u64>,
 }
@@ -82,19 +82,40 @@ pub(super) struct FlowImage {
     pub(super) by_parameter: DVector<f64>,
     /// Half of the way of each state from its lowest to its highest value.
     pub(super) travel: Vec<f64>,
+    /// Rests, impacts and events on the way.
+    pub(super) encounters: Encounters,
+}
+
+/// Rests, impacts and events of a motion over a time.
+#[derive(Clone, Debug)]
+pub(super) struct Encounters {
     /// The part of the time in which dry friction holds something.
     pub(super) stuck: f64,
     /// The number of impacts on walls.
     pub(super) impacts: usize,
-    /// The least speed of an impact, in the sizes of the states over the time; infinite if there is none.
+    /// The number of other events.
+    pub(super) events: usize,
+    /// The least speed at which a wall is hit or an event begins, in the sizes of the states over the time;
+    /// infinite if there is none.
     pub(super) slowest: f64,
     /// The factors c of the states of sums c y that stay what they are because dry friction holds them all
-    /// the time; independent of each other.
+    /// the time, independent of each other: of such a motion there is one for each place where it holds them.
     pub(super) places: Vec<Vec<f64>>,
 }
 
+impl Encounters {
+    /// No rest, no impact and no event.
+    const NONE: Self =
+        Self { stuck: 0.0, impacts: 0, events: 0, slowest: f64::INFINITY, places: vec![] };
+
+    /// The numbers of impacts and of other events.
+    pub(super) fn counts(&self) -> [usize; 2] {
+        [self.impacts, self.events]
+    }
+}
+
 impl Flow {
-    /// Compiles the right sides and the walls in the states, the time and the parameter.
+    /// Compiles the right sides and the events in the states, the time and the parameter.
     ///
     /// # Errors
     /// [`ResponseError`] for a derivative that cannot be written, or another name.
@@ -103,7 +124,7 @@ impl Flow {
         time: Symbol,
         right: &[Expr],
         parameter: Symbol,
-        walls: &[FlowWall],
+        events: &[FlowEvent],
     ) -> Result<Self, ResponseError> {
         let arguments: Vec<Symbol> = states.iter().copied().chain([time, parameter]).collect();
         let (mut slopes, mut by_parameter) = (Vec::new(), Vec::new());
@@ -133,10 +154,10 @@ impl Flow {
             varied: CompiledList::new(&varied, &arguments)?,
             slopes,
             by_parameter,
-            jumps: JumpSurfaces::new(states, time, right, parameter, walls)?,
+            jumps: JumpSurfaces::new(states, time, right, parameter, events)?,
             interrupt: Interrupt::default(),
             stopped: Cell::new(None),
-            rested: Cell::new(false),
+            ended: Cell::new(None),
             evaluations: Cell::new(0),
         })
     }
@@ -146,7 +167,7 @@ impl Flow {
         Self { interrupt, ..self }
     }
 
-    /// Whether the right sides jump, or the states on a wall.
+    /// Whether the right sides jump, or the states at an event.
     pub(super) fn jumps(&self) -> bool {
         self.jumps.is_some()
     }
@@ -180,25 +201,25 @@ impl Flow {
             SlidingStop::Chatter(index) | SlidingStop::Undetermined(index) => {
                 Some((stop, arguments.get(index)?.clone()))
             }
-            SlidingStop::NoValue | SlidingStop::RestsOnWall => None,
+            SlidingStop::NoValue | SlidingStop::RestsOnWall | SlidingStop::EventsAccumulate => None,
         }
     }
 
-    /// The least gap of a wall at the beginning, where every state changes by a unit of its size; infinite
-    /// without walls.
+    /// The least gap of an event at the beginning, where every state changes by a unit of its size; infinite
+    /// without events.
     pub(super) fn least_gap(&self, state: &[f64], parameter: f64, sizes: &[f64]) -> f64 {
         let jumps = self.jumps.as_ref();
         jumps.map_or(f64::INFINITY, |jumps| sliding::least_gap(jumps, state, parameter, sizes))
     }
 
-    /// The state behind the impact on the nearest wall at the beginning; `None` without walls.
-    pub(super) fn behind_impact(&self, state: &[f64], parameter: f64) -> Option<Vec<f64>> {
-        sliding::behind_impact(self.jumps.as_ref()?, state, parameter)
+    /// The state behind the nearest event at the beginning; `None` without events.
+    pub(super) fn behind_event(&self, state: &[f64], parameter: f64) -> Option<Vec<f64>> {
+        sliding::behind_event(self.jumps.as_ref()?, state, parameter)
     }
 
-    /// Whether a motion that was not followed came to rest on a wall.
-    pub(super) fn rested_on_wall(&self) -> bool {
-        self.rested.get()
+    /// The reason why a motion was not followed beyond an event: a rest on a wall, or an accumulation.
+    pub(super) fn ended_at_event(&self) -> Option<SlidingStop> {
+        self.ended.get()
     }
 
     /// The motion across jumps between two times; `None` if it cannot be followed.
@@ -221,7 +242,9 @@ impl Flow {
                 // What was stopped has cost something too: a run of one evaluation a step.
                 self.evaluations.set(self.evaluations.get() + STEPS as u64);
                 self.stopped.set(Some(stop));
-                self.rested.set(self.rested.get() || stop == SlidingStop::RestsOnWall);
+                if matches!(stop, SlidingStop::RestsOnWall | SlidingStop::EventsAccumulate) {
+                    self.ended.set(Some(stop));
+                }
                 None
             }
         }
@@ -339,13 +362,14 @@ impl Flow {
             let unit = Some(UNIT_OF_VARIATIONS);
             let run = self.sliding(jumps, start, [0.0, length], parameter, sizes, unit)?;
             let [low, high] = &run.bounds;
-            return Some(FlowImage {
+            let encounters = Encounters {
                 stuck: run.stuck / length,
                 impacts: run.impacts,
+                events: run.events,
                 slowest: run.slowest,
                 places: jumps.places_on(&run.throughout),
-                ..image_of(n, &run.values, sizes, low, high)
-            });
+            };
+            return Some(FlowImage { encounters, ..image_of(n, &run.values, sizes, low, high) });
         }
         // A row of the variations of each state, by all states and by the parameter.
         let width = n + 1;
@@ -403,10 +427,7 @@ fn image_of(n: usize, end: &[f64], sizes: &[f64], low: &[f64], high: &[f64]) -> 
         by_start: DMatrix::from_fn(n, n, |i, j| varied(i, j) / sizes[j]),
         by_parameter: DVector::from_iterator(n, (0..n).map(|i| varied(i, n))),
         travel: low.iter().zip(high).map(|(low, high)| 0.5 * (high - low)).collect(),
-        stuck: 0.0,
-        impacts: 0,
-        slowest: f64::INFINITY,
-        places: vec![],
+        encounters: Encounters::NONE,
     }
 }
 

@@ -57,6 +57,25 @@ impl OrbitPath {
         }
     }
 
+    /// The states at the end of a period from a start; where rounding puts an event before or behind the
+    /// end, as a kick at the beginning of each period, on that side of the event which is nearer to the start.
+    fn closing(&self, period: f64, start: &[f64], sizes: &[f64]) -> Option<Vec<f64>> {
+        /// Part of the period within which an event is at its end.
+        const AT_END: f64 = 1e-10;
+        let end = self.states_at(period)?;
+        let Self::Events(motion) = self else { return Some(end) };
+        let apart = |state: &[f64]| -> f64 {
+            let parts = state.iter().zip(start).zip(sizes);
+            parts.map(|((one, other), size)| ((one - other) / size).abs()).fold(0.0, f64::max)
+        };
+        let last = motion.events.occurrences.last();
+        let last = last.filter(|last| (last.time - period).abs() <= AT_END * period);
+        Some(match last.filter(|last| apart(&last.before) < apart(&end)) {
+            Some(last) => last.before.clone(),
+            None => end,
+        })
+    }
+
     /// Appends the states at times in increasing order to the columns, one for each state.
     fn sample(&self, times: &[f64], columns: &mut [Vec<f64>]) {
         match self {
@@ -98,7 +117,9 @@ impl CoupledProblem<'_> {
                 step_limit: STEP_LIMIT,
                 interrupt: self.question.interrupt,
                 mass: Some(self.mass.clone()),
-                ..TrajectoryRequest::of_rates(coordinates, rates).with_walls(self.walls.clone())
+                ..TrajectoryRequest::of_rates(coordinates, rates)
+                    .with_walls(self.walls.clone())
+                    .with_events(self.events.clone())
             };
             let motion = course.follow_by(Integrator::Taylor).ok()?;
             return motion.is_complete().then(|| OrbitPath::Events(Box::new(motion)));
@@ -205,15 +226,17 @@ impl CoupledProblem<'_> {
     fn error(&self, orbit: &Orbit, path: &OrbitPath, period: f64, scale: &[f64]) -> Option<f64> {
         let (n, m) = (self.states.len(), self.coordinates);
         let start = &orbit.unknowns.as_slice()[..n];
-        let end = path.states_at(period)?;
         let sizes = self.state_sizes(&orbit.kept.travel, scale);
+        let end = path.closing(period, start, &sizes)?;
         let mut missed = DVector::from_iterator(n, (0..n).map(|i| (end[i] - start[i]) / sizes[i]));
         let full = orbit.kept.monodromy.clone();
         let mut matrix =
             DMatrix::from_fn(n, n, |i, j| f64::from(i == j) - full[(i, j)] * sizes[j] / sizes[i]);
         let step = match self.kind {
             // Where dry friction holds a place it is that of the orbit, whatever it is.
-            Kind::Driven(_) if !orbit.kept.places.is_empty() => least_squares(matrix, &missed)?,
+            Kind::Driven(_) if !orbit.kept.encounters.places.is_empty() => {
+                least_squares(matrix, &missed)?
+            }
             Kind::Driven(_) => matrix.lu().solve(&missed)?,
             Kind::SelfExcited | Kind::Free => {
                 // The period is free as well, and so is the place on the orbit; the frequency of a
@@ -308,8 +331,9 @@ impl CoupledProblem<'_> {
             start: [place, (self.shown.call(&moved) - place) / step],
             stable,
             multipliers: two,
-            stuck: orbit.kept.stuck,
-            impacts: orbit.kept.impacts,
+            stuck: orbit.kept.encounters.stuck,
+            impacts: orbit.kept.encounters.impacts,
+            events: orbit.kept.encounters.events,
             error: path.as_ref().and_then(|path| self.error(orbit, path, period, scale)),
             coordinates,
             energy: self.energy.as_ref().map(|(energy, rest)| energy.over(rest, start)),

@@ -57,9 +57,6 @@ pub(super) fn respond(
     if question.along.is_some() {
         curves::check(&problem)?;
     }
-    if !question.walls.is_empty() && !matches!(problem.kind, Kind::Driven(_)) {
-        return Err(ResponseError::WallsWithoutDrive);
-    }
     match problem.kind {
         Kind::Driven(_) => {
             let (response, known) = problem.driven_response()?;

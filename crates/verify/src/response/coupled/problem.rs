@@ -18,9 +18,10 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::flow::{Flow, FlowImage};
-use super::surfaces::{FlowWall, largest};
+use super::flow::{Encounters, Flow, FlowImage};
+use super::surfaces::{FlowEvent, largest};
 use crate::coupled::{CoupledEquations, Energy};
+use crate::event::StateEvent;
 use crate::expr::{CompiledFunction, Expr};
 use crate::numeric::orbit_branch::{OrbitEquations, OrbitPoint, PeriodImage};
 use crate::response::driven::{drive_frequency, in_phase};
@@ -38,15 +39,8 @@ pub(super) struct Course {
     pub(super) travel: Travel,
     /// The derivative of the states after the period by those at the beginning.
     pub(super) monodromy: DMatrix<f64>,
-    /// The part of the period in which dry friction holds something.
-    pub(super) stuck: f64,
-    /// The number of impacts on walls in the period.
-    pub(super) impacts: usize,
-    /// The least speed of an impact, in the sizes of the states over the period; infinite if there is none.
-    pub(super) slowest: f64,
-    /// The factors of the states of sums that stay what they are, because dry friction holds them all the
-    /// time: of such a motion there is one for each place where it holds them.
-    pub(super) places: Vec<Vec<f64>>,
+    /// Rests, impacts and events in the period.
+    pub(super) encounters: Encounters,
 }
 
 /// An orbit of a branch.
@@ -112,6 +106,8 @@ pub(super) struct CoupledProblem<'a> {
     /// The walls, with numbers for all parameters but one, and the mass matrix of their impacts.
     pub(super) walls: Vec<Wall>,
     pub(super) mass: Vec<Vec<Expr>>,
+    /// The other events, with numbers for all parameters but one.
+    pub(super) events: Vec<StateEvent>,
     /// Whether a motion backward in time is a motion, so that nothing damps.
     pub(super) undamped: bool,
     /// The quantity that is listed, in the coordinates.
@@ -138,11 +134,14 @@ impl<'a> CoupledProblem<'a> {
     ) -> Result<Self, ResponseError> {
         let time = Symbol::new("t");
         let rates = &equations.rates;
-        let driven = rates.right.iter().any(|rate| rate.contains(time));
+        let driven = rates.right.iter().chain(question.of_jumps()).any(|part| part.contains(time));
         let velocities = &rates.states[equations.coordinates.len()..];
+        let reversible = is_reversible(&rates.right, equations.coordinates.len(), velocities)?;
         // An impact takes energy, or else the motions are not those of a smooth system.
-        let undamped = question.walls.is_empty()
-            && is_reversible(&rates.right, equations.coordinates.len(), velocities)?;
+        let undamped = reversible && !question.has_jumps_of_states();
+        if reversible && !undamped && !driven {
+            return Err(ResponseError::EventsWithoutDamping);
+        }
         let free = undamped && !driven;
         let (parameter, parameters) = (question.parameter, question.parameters());
         // Free motions have a frequency for each energy, which is what varies.
@@ -163,12 +162,18 @@ impl<'a> CoupledProblem<'a> {
             .collect::<Result<_, _>>()?;
         let states = rates.states.clone();
         let (walls, mass) = with_numbers(question, equations, &values)?;
-        let flow_walls: Vec<FlowWall> = walls
+        let events: Vec<StateEvent> = question
+            .events
+            .iter()
+            .map(|event| event.substitute_all(&values))
+            .collect::<Result<_, _>>()?;
+        let mut flow_events: Vec<FlowEvent> = walls
             .iter()
             .map(|wall| flow_wall(wall, &mass, &states, &equations.coordinates))
             .collect::<Result<_, _>>()?;
+        flow_events.extend(events.iter().flat_map(|event| flow_event(event, &states)));
         let in_time =
-            Flow::new(&states, time, &right, parameter, &flow_walls)?.until(question.interrupt);
+            Flow::new(&states, time, &right, parameter, &flow_events)?.until(question.interrupt);
         let numbers = [(parameter, ANY)].into();
         let series = System::new(&states, time, &right, &numbers)
             .map_err(|error| ResponseError::Rates(error.to_string()))?
@@ -176,10 +181,15 @@ impl<'a> CoupledProblem<'a> {
         let names: Vec<Symbol> = states.iter().copied().chain([parameter, time]).collect();
         let (kind, in_phase) = match (driven, free) {
             (true, _) => {
-                let frequency = drive_frequency(&right, &states)?;
+                let of_events = flow_events.iter();
+                let of_events =
+                    of_events.flat_map(|event| [&event.gap].into_iter().chain(&event.after));
+                let timed: Vec<Expr> = right.iter().chain(of_events).cloned().collect();
+                let frequency = drive_frequency(&timed, &states)?;
                 let periods = Expr::from(i64::try_from(question.periods).unwrap_or(1));
                 let base = Expr::divide(&frequency, &periods)?;
-                let flow = flow_in_phase(&names, &states, (&right, &flow_walls), &base, parameter)?;
+                let flow =
+                    flow_in_phase(&names, &states, (&right, &flow_events), &base, parameter)?;
                 let base = CompiledFunction::new(&base, &[parameter])?;
                 (Kind::Driven(Drive { frequency, base }), Some(flow))
             }
@@ -222,6 +232,7 @@ impl<'a> CoupledProblem<'a> {
             right,
             walls,
             mass,
+            events,
             in_time,
             in_phase: in_phase.map(|flow: Flow| flow.until(question.interrupt)),
             series,
@@ -329,7 +340,7 @@ impl<'a> CoupledProblem<'a> {
 
     /// Whether nothing moves on an orbit, because dry friction holds everything: no motion.
     pub(super) fn is_at_rest(&self, orbit: &Orbit) -> bool {
-        let rests = orbit.kept.places.len() == self.coordinates;
+        let rests = orbit.kept.encounters.places.len() == self.coordinates;
         self.rests.set(self.rests.get() || rests);
         rests
     }
@@ -402,9 +413,9 @@ impl<'a> CoupledProblem<'a> {
         scale: &[f64],
     ) -> Option<PeriodImage<Course>> {
         let sizes = self.sizes_of_start(start, scale);
-        let FlowImage { end, by_start, by_parameter, travel, stuck, impacts, slowest, places } =
+        let FlowImage { end, by_start, by_parameter, travel, encounters } =
             self.in_phase.as_ref()?.image(start, TAU, parameter, &sizes)?;
-        let path = Course { travel, monodromy: by_start.clone(), stuck, impacts, slowest, places };
+        let path = Course { travel, monodromy: by_start.clone(), encounters };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 
@@ -427,10 +438,7 @@ impl<'a> CoupledProblem<'a> {
         let path = Course {
             travel: image.travel,
             monodromy: image.by_start.clone(),
-            stuck: image.stuck,
-            impacts: image.impacts,
-            slowest: image.slowest,
-            places: image.places,
+            encounters: image.encounters,
         };
         let mut by_start = image.by_start.resize(n + 1, n + 1, 0.0);
         by_start.view_mut((0, n), (n, 1)).copy_from(&flow);
@@ -456,16 +464,8 @@ impl<'a> CoupledProblem<'a> {
         let n = self.states.len();
         let mut sizes = self.sizes_of_start(&start[..n], scale);
         sizes.push(omega);
-        let FlowImage {
-            mut end,
-            mut by_start,
-            by_parameter,
-            travel,
-            stuck,
-            impacts,
-            slowest,
-            places,
-        } = self.in_phase.as_ref()?.image(start, TAU, omega, &sizes)?;
+        let FlowImage { mut end, mut by_start, by_parameter, travel, encounters } =
+            self.in_phase.as_ref()?.image(start, TAU, omega, &sizes)?;
         // The damping stays what it is; its row holds the rate that is to be zero.
         let velocity = state + self.coordinates;
         end[n] = start[n] + start[velocity] / size;
@@ -473,8 +473,7 @@ impl<'a> CoupledProblem<'a> {
             by_start[(n, column)] = if column == velocity { 1.0 / size } else { 0.0 };
         }
         let monodromy = by_start.view((0, 0), (n, n)).into_owned();
-        let path =
-            Course { travel: travel[..n].to_vec(), monodromy, stuck, impacts, slowest, places };
+        let path = Course { travel: travel[..n].to_vec(), monodromy, encounters };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 
@@ -516,14 +515,8 @@ impl<'a> CoupledProblem<'a> {
         // On the way back the velocities are the negative ones.
         let travel = |(i, travel): (usize, &f64)| if i < m { *travel } else { 2.0 * travel };
         let travel = half.travel[..n].iter().enumerate().map(travel).collect();
-        let path = Course {
-            travel,
-            monodromy,
-            stuck: half.stuck,
-            impacts: 2 * half.impacts,
-            slowest: half.slowest,
-            places: half.places,
-        };
+        // A free motion has neither impacts nor events.
+        let path = Course { travel, monodromy, encounters: half.encounters };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 }
@@ -542,9 +535,9 @@ fn at_places(
     let value = |factors: &[f64]| -> f64 {
         factors.iter().zip(start).map(|(factor, value)| factor * value).sum()
     };
-    let is_known = known.iter().map(|(factors, _)| factors).eq(&image.path.places);
+    let is_known = known.iter().map(|(factors, _)| factors).eq(&image.path.encounters.places);
     if !is_known {
-        let all = image.path.places.iter();
+        let all = image.path.encounters.places.iter();
         *known = all.map(|factors| (factors.clone(), value(factors))).collect();
     }
     for (factors, place) in known.iter() {
@@ -590,18 +583,31 @@ fn flow_wall(
     mass: &[Vec<Expr>],
     states: &[Symbol],
     coordinates: &[Symbol],
-) -> Result<FlowWall, ResponseError> {
+) -> Result<FlowEvent, ResponseError> {
     let impact = wall.impact(coordinates, states, Some(mass))?;
     let velocities = impact.velocities_after(coordinates, &wall.restitution)?;
     let positions = coordinates.iter().copied().map(Expr::from);
-    Ok(FlowWall { gap: impact.gap, after: positions.chain(velocities).collect() })
+    let after = positions.chain(velocities).collect();
+    Ok(FlowEvent { gap: impact.gap, after, is_wall: true })
 }
 
-/// The right sides and walls in the phase of a motion of frequency `base`.
+/// An event with all states after it; one that counts in both directions is two.
+fn flow_event(event: &StateEvent, states: &[Symbol]) -> Vec<FlowEvent> {
+    let after = |state: &Symbol| {
+        let set = event.assignments.iter().find(|(name, _)| name == state);
+        set.map_or_else(|| Expr::from(*state), |(_, value)| value.clone())
+    };
+    let after: Vec<Expr> = states.iter().map(after).collect();
+    let falling = |gap: Expr| FlowEvent { gap, after: after.clone(), is_wall: false };
+    let growing = event.both_ways.then(|| falling(event.guard.clone()));
+    [falling(-&event.guard)].into_iter().chain(growing).collect()
+}
+
+/// The right sides and events in the phase of a motion of frequency `base`.
 pub(super) fn flow_in_phase(
     names: &[Symbol],
     states: &[Symbol],
-    (right, walls): (&[Expr], &[FlowWall]),
+    (right, events): (&[Expr], &[FlowEvent]),
     base: &Expr,
     parameter: Symbol,
 ) -> Result<Flow, ResponseError> {
@@ -612,12 +618,12 @@ pub(super) fn flow_in_phase(
     };
     let right: Vec<Expr> = right.iter().map(rate).collect::<Result<_, _>>()?;
     let moved = |expression: &Expr| in_phase(expression, Symbol::new("t"), &moment);
-    let wall = |wall: &FlowWall| -> Result<FlowWall, ResponseError> {
-        let after = wall.after.iter().map(moved).collect::<Result<_, _>>()?;
-        Ok(FlowWall { gap: moved(&wall.gap)?, after })
+    let event = |event: &FlowEvent| -> Result<FlowEvent, ResponseError> {
+        let after = event.after.iter().map(moved).collect::<Result<_, _>>()?;
+        Ok(FlowEvent { gap: moved(&event.gap)?, after, is_wall: event.is_wall })
     };
-    let walls: Vec<FlowWall> = walls.iter().map(wall).collect::<Result<_, _>>()?;
-    Flow::new(states, phase, &right, parameter, &walls)
+    let events: Vec<FlowEvent> = events.iter().map(event).collect::<Result<_, _>>()?;
+    Flow::new(states, phase, &right, parameter, &events)
 }
 
 /// Whether a motion passed backward in time is a motion as well: the accelerations do not change

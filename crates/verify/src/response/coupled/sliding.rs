@@ -1,7 +1,7 @@
-//! Motions across jumps of the rates and impacts on walls, from event to event, with their variations.
+//! Motions across jumps of the rates and of the states, at impacts and other events, from event to event, with their variations.
 //!
 //! ```text
-//! impact      g falls through zero: y -> R(y),     behind: z -> R_y z + R_p + (f_behind - R_y f_before - R_t) (g_y z + g_p)/(dg/dt)_before
+//! event       g falls through zero: y -> R(y),     behind: z -> R_y z + R_p + (f_behind - R_y f_before - R_t) (g_y z + g_p)/(dg/dt)_before
 //! crossing    u_i changes its sign, and s_i with it
 //! sticking    du_i/dt leads back to u_i = 0 from both sides: s_i solves du_i/dt = 0, |s_i| <= 1, until it leaves these bounds
 //! variations  z' = f_y z + f_p,    behind an event:  z + (f_behind - f_before) (u_y z + u_p)/(du_i/dt)_before
@@ -24,7 +24,7 @@ use std::cell::{Cell, RefCell};
 
 use nalgebra::{DMatrix, DVector};
 
-use super::surfaces::{JumpSurfaces, WallMap};
+use super::surfaces::{EventMap, JumpSurfaces};
 use crate::numeric::ode::{
     Action, Event, IntegrationOptions, Point, StopReason, integrate_first_order,
 };
@@ -60,6 +60,8 @@ pub(super) enum SlidingStop {
     NoValue,
     /// Impacts accumulate, and the motion rests on a wall.
     RestsOnWall,
+    /// Other events accumulate, or one takes place at once with another.
+    EventsAccumulate,
 }
 
 /// A run from a start.
@@ -76,8 +78,10 @@ pub(super) struct SlidingRun {
     pub(super) throughout: Vec<usize>,
     /// The number of impacts on walls.
     pub(super) impacts: usize,
-    /// The least speed of an impact, in the sizes of the states over the duration; infinite if there is
-    /// none.
+    /// The number of other events.
+    pub(super) events: usize,
+    /// The least speed of an impact or into an event, in the sizes of the states over the duration; infinite
+    /// if there is none.
     pub(super) slowest: f64,
     /// Evaluations of the rates.
     pub(super) evaluations: u64,
@@ -90,8 +94,8 @@ enum Meeting {
     Reached(usize),
     /// The side of this surface, on which it sticks, reaches this bound.
     Released(usize, f64),
-    /// The motion has reached this wall.
-    Struck(usize),
+    /// The gap of this event has fallen to zero.
+    Event(usize),
 }
 
 /// The state of a run.
@@ -108,11 +112,13 @@ struct EventRun<'a> {
     /// The surfaces on which it sticks.
     held: Held,
     bounds: RefCell<[Vec<f64>; 2]>,
-    /// The number of impacts, and of the last ones that followed each other at once.
+    /// The numbers of impacts and of other events, and of the last ones that followed each other at once.
     impacts: usize,
+    events: usize,
     at_once: usize,
-    /// The time of the last impact, and the least speed of an impact.
-    struck: f64,
+    /// The time of the last event, of all and of each, and the least speed into one.
+    last: f64,
+    passed: Vec<f64>,
     slowest: f64,
     evaluations: Cell<u64>,
 }
@@ -144,7 +150,7 @@ pub(super) fn follow(
         run.settle()?;
         let held = run.held.clone();
         let began = run.time;
-        let meeting = if run.time < to { run.leg(to, &options)? } else { None };
+        let meeting = if run.time < to { run.leg([from, to], &options)? } else { None };
         if !held.is_empty() {
             stuck += run.time - began;
         }
@@ -160,13 +166,14 @@ pub(super) fn follow(
                     stuck,
                     throughout: throughout.unwrap_or_default(),
                     impacts: run.impacts,
+                    events: run.events,
                     slowest: run.slowest,
                     evaluations: run.evaluations.get(),
                 });
             }
             Some(Meeting::Reached(index)) => run.meet(index)?,
             Some(Meeting::Released(index, side)) => run.release(index, side)?,
-            Some(Meeting::Struck(wall)) => run.strike(wall, to - from)?,
+            Some(Meeting::Event(event)) => run.pass(event, to - from)?,
         }
     }
     let nearest = (0..run.sides.len()).min_by(|one, other| {
@@ -182,7 +189,8 @@ fn at_beginning(surfaces: &JumpSurfaces, state: &[f64], parameter: f64) -> Vec<f
     state.iter().copied().chain([0.0, parameter]).chain(sides).collect()
 }
 
-/// The least gap at time zero, where every state changes by a unit of its size; infinite without walls.
+/// The least gap of an event at time zero, where every state changes by a unit of its size; infinite without
+/// events.
 pub(super) fn least_gap(
     surfaces: &JumpSurfaces,
     state: &[f64],
@@ -190,24 +198,24 @@ pub(super) fn least_gap(
     sizes: &[f64],
 ) -> f64 {
     let arguments = at_beginning(surfaces, state, parameter);
-    let gap = |wall: &WallMap| {
-        let normal = wall.normal.at(&arguments);
+    let gap = |event: &EventMap| {
+        let normal = event.normal.at(&arguments);
         let size: f64 =
             sizes.iter().enumerate().map(|(k, size)| (normal[(0, k)] * size).abs()).sum();
-        wall.gap.call(&arguments).abs() / size
+        event.gap.call(&arguments).abs() / size
     };
-    surfaces.walls.iter().map(gap).fold(f64::INFINITY, f64::min)
+    surfaces.events.iter().map(gap).fold(f64::INFINITY, f64::min)
 }
 
-/// The state behind an impact on the nearest wall at time zero; `None` without walls.
-pub(super) fn behind_impact(
+/// The state behind the nearest event at time zero; `None` without events.
+pub(super) fn behind_event(
     surfaces: &JumpSurfaces,
     state: &[f64],
     parameter: f64,
 ) -> Option<Vec<f64>> {
     let arguments = at_beginning(surfaces, state, parameter);
-    let gap = |wall: &&WallMap| wall.gap.call(&arguments).abs();
-    let nearest = surfaces.walls.iter().min_by(|one, other| gap(one).total_cmp(&gap(other)))?;
+    let gap = |event: &&EventMap| event.gap.call(&arguments).abs();
+    let nearest = surfaces.events.iter().min_by(|one, other| gap(one).total_cmp(&gap(other)))?;
     let after = nearest.after.at(&arguments);
     Some((0..surfaces.states).map(|i| after[(i, 0)]).collect())
 }
@@ -219,7 +227,7 @@ pub(super) fn in_front_of_walls(
     parameter: f64,
 ) -> Vec<f64> {
     let n = surfaces.states;
-    for wall in &surfaces.walls {
+    for wall in surfaces.events.iter().filter(|event| event.is_wall) {
         let arguments = at_beginning(surfaces, &state, parameter);
         let gap = wall.gap.call(&arguments);
         if gap < 0.0 {
@@ -297,8 +305,10 @@ impl<'a> EventRun<'a> {
             held: Held::default(),
             bounds: RefCell::new([start.to_vec(), start.to_vec()]),
             impacts: 0,
+            events: 0,
             at_once: 0,
-            struck: f64::NEG_INFINITY,
+            last: f64::NEG_INFINITY,
+            passed: vec![f64::NEG_INFINITY; surfaces.events.len()],
             slowest: f64::INFINITY,
             evaluations: Cell::new(0),
         }
@@ -393,15 +403,15 @@ impl<'a> EventRun<'a> {
         Ok(())
     }
 
-    /// Follows the motion until the next event or the end; returns the event.
+    /// Follows a run between two times until the next event or the end; returns the event.
     fn leg(
         &mut self,
-        to: f64,
+        [from, to]: [f64; 2],
         options: &IntegrationOptions,
     ) -> Result<Option<Meeting>, SlidingStop> {
         let run = &*self;
         let (surfaces, n) = (run.surfaces, run.surfaces.states);
-        let first = n + 2;
+        let (first, duration) = (n + 2, to - from);
         let memory = RefCell::new(Vec::new());
         let memory = &memory;
         let rates = |time: f64, values: &Vec<f64>, rates: &mut Vec<f64>| {
@@ -453,15 +463,15 @@ impl<'a> EventRun<'a> {
                 meetings.push(Meeting::Reached(index));
             }
         }
-        for (index, wall) in surfaces.walls.iter().enumerate() {
-            let unseen = UNSEEN * run.size_of_gap(index);
+        for (index, event) in surfaces.events.iter().enumerate() {
+            let unseen = run.unseen_gap(index, duration);
             let gap = move |point: &Point<Vec<f64>>| {
                 let arguments = &mut *memory.borrow_mut();
                 run.set_arguments(point.t, &point.y, arguments);
-                wall.gap.call(arguments) + unseen
+                event.gap.call(arguments) + unseen
             };
             events.push(Event::new(gap, Action::Stop).falling().reading(n));
-            meetings.push(Meeting::Struck(index));
+            meetings.push(Meeting::Event(index));
         }
         let begin = Point { t: run.time, y: run.values.clone() };
         let path = integrate_first_order(rates, begin, to, &events, options)
@@ -551,7 +561,7 @@ impl<'a> EventRun<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::surfaces::FlowWall;
+    use super::super::surfaces::FlowEvent;
     use super::*;
     use crate::expr::Expr;
     use crate::symbol::Symbol;
@@ -619,7 +629,7 @@ mod tests {
         // The wall 1 + sin(2*t)/10 + p/20 with the coefficient of restitution 0.7 - p/50.
         let gap = text("1 + sin(2*t)/10 + p/20 - x");
         let after = text("x' - (1.7 - p/50)*(x' - cos(2*t)/5)");
-        let wall = FlowWall { gap, after: vec![text("x"), after] };
+        let wall = FlowEvent { gap, after: vec![text("x"), after], is_wall: true };
         let surfaces = JumpSurfaces::new(&states, "t".into(), &right, "p".into(), &[wall]);
         let surfaces = surfaces.expect("surfaces").expect("a wall");
         let options = IntegrationOptions::with_tolerance(1e-13);

@@ -200,8 +200,10 @@ impl CoupledProblem<'_> {
         if self.rests.get() {
             return ResponseError::NothingMoves { parameter, range: self.question.range };
         }
-        if self.in_phase.iter().chain([&self.in_time]).any(Flow::rested_on_wall) {
-            return ResponseError::RestsOnWall;
+        match self.in_phase.iter().chain([&self.in_time]).find_map(Flow::ended_at_event) {
+            Some(SlidingStop::EventsAccumulate) => return ResponseError::EventsAccumulate,
+            Some(_) => return ResponseError::RestsOnWall,
+            None => {}
         }
         let stopped = self.in_phase.iter().chain([&self.in_time]).find_map(Flow::stopped);
         match stopped {

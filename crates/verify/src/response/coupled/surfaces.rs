@@ -64,27 +64,31 @@ impl Table {
     }
 }
 
-/// A rigid wall in the time of a flow.
+/// An event in the time of a flow, at which states jump: the impact on a rigid wall, or another one.
 #[derive(Clone, Debug)]
-pub(super) struct FlowWall {
-    /// The gap in the states, the time and the parameter.
+pub(super) struct FlowEvent {
+    /// The gap in the states, the time and the parameter: the event is where it falls through zero.
     pub(super) gap: Expr,
-    /// All states after an impact.
+    /// All states after the event.
     pub(super) after: Vec<Expr>,
+    /// Whether no motion is behind it, as behind a wall.
+    pub(super) is_wall: bool,
 }
 
-/// A rigid wall, compiled; the arguments are those of the rates.
+/// An event, compiled; the arguments are those of the rates.
 #[derive(Clone, Debug)]
-pub(super) struct WallMap {
+pub(super) struct EventMap {
     /// The gap g.
     pub(super) gap: CompiledFunction,
     /// g_y, g_p, g_t in one row.
     pub(super) normal: Table,
-    /// The states R after an impact, R_y, R_p, R_t, a row for each state.
+    /// The states R after the event, R_y, R_p, R_t, a row for each state.
     pub(super) after: Table,
+    /// Whether no motion is behind it, as behind a wall.
+    pub(super) is_wall: bool,
 }
 
-/// Rates with the surfaces across which they jump and the walls on which states do, compiled. The
+/// Rates with the surfaces across which they jump and the events at which states do, compiled. The
 /// arguments of all functions are the states, the time, the parameter, then the side of each surface.
 #[derive(Clone, Debug)]
 pub(super) struct JumpSurfaces {
@@ -111,8 +115,8 @@ pub(super) struct JumpSurfaces {
     pub(super) rises: Table,
     /// g_y, then g_p.
     pub(super) varied_rises: Table,
-    /// The rigid walls.
-    pub(super) walls: Vec<WallMap>,
+    /// The impacts on rigid walls and the other events.
+    pub(super) events: Vec<EventMap>,
 }
 
 impl JumpSurfaces {
@@ -127,7 +131,7 @@ impl JumpSurfaces {
         time: Symbol,
         right: &[Expr],
         parameter: Symbol,
-        walls: &[FlowWall],
+        events: &[FlowEvent],
     ) -> Result<Option<Self>, ResponseError> {
         let known: Vec<Symbol> = states.iter().copied().chain([time, parameter]).collect();
         let stem = fresh_stem("side", &known);
@@ -139,7 +143,7 @@ impl JumpSurfaces {
             }
         }
         let count = sides.arguments.len();
-        if count == 0 && walls.is_empty() {
+        if count == 0 && events.is_empty() {
             return Ok(None);
         }
         let names: Vec<Symbol> = (0..count).map(|index| sides.name(index)).collect();
@@ -203,16 +207,17 @@ impl JumpSurfaces {
             Table::new(&rows, &all)
         };
         let by_all: Vec<Symbol> = states.iter().copied().chain([parameter, time]).collect();
-        let wall = |wall: &FlowWall| -> Result<WallMap, ResponseError> {
-            Ok(WallMap {
-                gap: CompiledFunction::new(&wall.gap, &all)?,
-                normal: table(std::slice::from_ref(&wall.gap), false, &[&by_all])?,
-                after: table(&wall.after, true, &[&by_all])?,
+        let event = |event: &FlowEvent| -> Result<EventMap, ResponseError> {
+            Ok(EventMap {
+                gap: CompiledFunction::new(&event.gap, &all)?,
+                normal: table(std::slice::from_ref(&event.gap), false, &[&by_all])?,
+                after: table(&event.after, true, &[&by_all])?,
+                is_wall: event.is_wall,
             })
         };
         Ok(Some(Self {
             states: states.len(),
-            walls: walls.iter().map(wall).collect::<Result<_, _>>()?,
+            events: events.iter().map(event).collect::<Result<_, _>>()?,
             heights: sides
                 .arguments
                 .iter()

@@ -1,11 +1,11 @@
-//! The events at which a motion meets a surface, leaves it or hits a wall, with the saltation matrices of
-//! its variations (the head of `sliding.rs`).
+//! The events at which a motion meets a surface, leaves it, hits a wall or is set anew, with the saltation
+//! matrices of its variations (the head of `sliding.rs`).
 
 use nalgebra::{DMatrix, DVector};
 
 use super::held::solved;
-use super::{AT_REST, EventRun, SlidingStop};
-use crate::response::coupled::surfaces::WallMap;
+use super::{AT_REST, EventRun, SlidingStop, UNSEEN};
+use crate::response::coupled::surfaces::EventMap;
 
 impl EventRun<'_> {
     /// Passes the event at which the motion reaches a surface: it crosses it or begins to stick.
@@ -28,56 +28,112 @@ impl EventRun<'_> {
         Ok(())
     }
 
-    /// The gap of a wall where every state changes by a unit of its size.
-    pub(super) fn size_of_gap(&self, wall: usize) -> f64 {
-        let normal = self.surfaces.walls[wall].normal.at(&self.here());
+    /// The gap of an event at these arguments where every state changes by a unit of its size.
+    pub(super) fn size_of_gap(&self, event: usize, arguments: &[f64]) -> f64 {
+        let normal = self.surfaces.events[event].normal.at(arguments);
         (0..self.surfaces.states).map(|k| (normal[(0, k)] * self.sizes[k]).abs()).sum()
+    }
+
+    /// The rate at which the gap of an event changes at these arguments.
+    fn rate_of_gap(&self, event: usize, arguments: &[f64]) -> f64 {
+        let n = self.surfaces.states;
+        let normal = self.surfaces.events[event].normal.at(arguments);
+        let rates = self.surfaces.rates.at(arguments);
+        (0..n).map(|k| normal[(0, k)] * rates[(k, 0)]).sum::<f64>() + normal[(0, n + 1)]
     }
 
     /// Checks that the motion does not begin behind a wall.
     pub(super) fn check_walls(&self) -> Result<(), SlidingStop> {
         let arguments = self.here();
-        let is_behind = |(index, wall): (usize, &WallMap)| {
-            let gap = wall.gap.call(&arguments);
-            gap.is_nan() || gap < -AT_REST * self.size_of_gap(index)
+        let is_behind = |(index, event): (usize, &EventMap)| {
+            let gap = event.gap.call(&arguments);
+            let least = -AT_REST * self.size_of_gap(index, &arguments);
+            gap.is_nan() || event.is_wall && gap < least
         };
-        match self.surfaces.walls.iter().enumerate().any(is_behind) {
+        match self.surfaces.events.iter().enumerate().any(is_behind) {
             true => Err(SlidingStop::NoValue),
             false => Ok(()),
         }
     }
 
-    /// Carries out the impact on a wall, with the saltation matrix of the variations.
-    pub(super) fn strike(&mut self, wall: usize, duration: f64) -> Result<(), SlidingStop> {
-        /// Part of a run below which an impact follows the one before at once.
+    /// Puts the states on an event of which they are a rounding away.
+    fn put_on_event(&mut self, event: usize) {
+        let arguments = self.here();
+        let map = &self.surfaces.events[event];
+        let normal = map.normal.at(&arguments);
+        let n = self.surfaces.states;
+        let square: f64 = (0..n).map(|k| normal[(0, k)].powi(2)).sum();
+        let gap = map.gap.call(&arguments);
+        if square == 0.0 || gap.abs() > AT_REST * self.size_of_gap(event, &arguments) {
+            return;
+        }
+        for i in 0..n {
+            self.values[i] -= gap * normal[(0, i)] / (square * self.sizes[i]);
+        }
+    }
+
+    /// The level of the gap of an event, with the sign turned, below which it is seen to fall: a rounding
+    /// below zero; of an event that has just taken place, and through whose guard the motion goes on, below
+    /// what the gap is, so that there is no second one.
+    pub(super) fn unseen_gap(&self, event: usize, duration: f64) -> f64 {
+        let arguments = self.here();
+        let map = &self.surfaces.events[event];
+        let rate = self.rate_of_gap(event, &arguments);
+        let unseen = UNSEEN * self.size_of_gap(event, &arguments).max(rate.abs() * duration);
+        let has_passed = !map.is_wall && self.time - self.passed[event] <= UNSEEN * duration;
+        match has_passed && rate < 0.0 {
+            true => -map.gap.call(&arguments) - unseen,
+            false => unseen,
+        }
+    }
+
+    /// Passes an event, such as the impact on a wall, with the saltation matrix of the variations.
+    pub(super) fn pass(&mut self, event: usize, duration: f64) -> Result<(), SlidingStop> {
+        /// Part of a run below which an event follows the one before at once.
         const AT_ONCE: f64 = 1e-7;
         const MOST_AT_ONCE: usize = 3;
         self.refresh()?;
         let (n, width) = (self.surfaces.states, self.surfaces.states + 1);
         let arguments = self.here();
-        let map = &self.surfaces.walls[wall];
+        let map = &self.surfaces.events[event];
         let (normal, after) = (map.normal.at(&arguments), map.after.at(&arguments));
         let rates = self.surfaces.rates.at(&arguments);
         let before = DVector::from_fn(n, |i, _| rates[(i, 0)]);
-        let speed: f64 =
-            (0..n).map(|k| normal[(0, k)] * before[k]).sum::<f64>() + normal[(0, n + 1)];
+        let speed = self.rate_of_gap(event, &arguments);
         // A gap that has turned to rounding opens again.
         if speed >= 0.0 {
             return Ok(());
         }
         self.at_once =
-            if self.time - self.struck < AT_ONCE * duration { self.at_once + 1 } else { 0 };
+            if self.time - self.last < AT_ONCE * duration { self.at_once + 1 } else { 0 };
         if self.at_once > MOST_AT_ONCE {
-            return Err(SlidingStop::RestsOnWall);
+            return Err(match map.is_wall {
+                true => SlidingStop::RestsOnWall,
+                false => SlidingStop::EventsAccumulate,
+            });
         }
-        (self.struck, self.impacts) = (self.time, self.impacts + 1);
-        self.slowest = self.slowest.min(-speed * duration / self.size_of_gap(wall));
-        // Onto the wall, from which the event is a rounding away, and away from it.
-        let gap = map.gap.call(&arguments);
-        let square: f64 = (0..n).map(|k| normal[(0, k)].powi(2)).sum();
+        (self.last, self.passed[event]) = (self.time, self.time);
+        *(if map.is_wall { &mut self.impacts } else { &mut self.events }) += 1;
+        let slowness = -speed * duration / self.size_of_gap(event, &arguments);
+        self.slowest = self.slowest.min(slowness);
         let variations = self.values.clone();
         for i in 0..n {
-            self.values[i] = (after[(i, 0)] - gap * normal[(0, i)] / square) / self.sizes[i];
+            self.values[i] = after[(i, 0)] / self.sizes[i];
+        }
+        self.put_on_event(event);
+        if !map.is_wall {
+            self.check_walls()?;
+        }
+        // A jump past the guard of another event would be a second event at once.
+        let here = self.here();
+        let jumps_past = |index: usize, other: &EventMap| {
+            let least = AT_REST * self.size_of_gap(index, &here);
+            let gap = |arguments: &[f64]| other.gap.call(arguments);
+            index != event && !other.is_wall && gap(&arguments) > least && gap(&here) < -least
+        };
+        if (self.surfaces.events.iter().enumerate()).any(|(index, other)| jumps_past(index, other))
+        {
+            return Err(SlidingStop::EventsAccumulate);
         }
         self.begin()?;
         let Some(unit) = self.unit else { return Ok(()) };

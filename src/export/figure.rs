@@ -97,6 +97,18 @@ impl CurveStyle {
     pub const TWO_MOTIONS: Self = Self("#e69f00", POINTS, 2.2);
     /// Places with more stable motions.
     pub const MANY_MOTIONS: Self = Self("#cc79a7", POINTS, 2.8);
+    /// Places that belong together, one style for each of several sets of them.
+    pub const REGIONS: [Self; 7] = [
+        Self("#56b4e9", POINTS, 2.2),
+        Self("#e69f00", POINTS, 2.2),
+        Self("#009e73", POINTS, 2.2),
+        Self("#cc79a7", POINTS, 2.2),
+        Self("#0072b2", POINTS, 2.2),
+        Self("#d55e00", POINTS, 2.2),
+        Self("#f0e442", POINTS, 2.2),
+    ];
+    /// Places that belong to none of these sets.
+    pub const OUTSIDE: Self = Self("#000000", POINTS, 2.2);
     /// One of many curves, which need not be distinguished.
     pub const ONE_OF_MANY: Self = Self("#bbbbbb", "none", 0.7);
     #[cfg(feature = "plot")]

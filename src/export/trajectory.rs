@@ -8,7 +8,9 @@ use crate::report::{MotionSweep, TrajectoryReport};
 use crate::report::{event_in_words, section_in_words, wall_in_words};
 use crate::symbol::Symbol;
 use crate::trajectory::in_words;
-use crate::trajectory::{PoincareSection, SweptMotion, Trajectory, TrajectoryRequest};
+use crate::trajectory::{
+    Basins, Fate, PoincareSection, SweptMotion, Trajectory, TrajectoryRequest,
+};
 
 /// Number of points of a table or a curve if no samples are requested.
 const POINTS: u32 = 2000;
@@ -227,12 +229,16 @@ pub fn sweep_csv(sweep: &MotionSweep) -> String {
 }
 
 /// The picture of a sweep over the varied parameter: every state on the section, a bifurcation
-/// diagram; without a section the least and the greatest values.
+/// diagram; without a section the least and the greatest values; of starts in a plane the basins of the
+/// attractors.
 ///
 /// # Errors
 /// As [`figure`].
 pub fn sweep_picture(sweep: &MotionSweep) -> Result<String, FigureError> {
     let course = sweep.course;
+    if let (Some(basins), [across, up]) = (sweep.basins(), sweep.names) {
+        return basins_picture(sweep, &basins, [across, up]);
+    }
     let varied = sweep.names.first().map_or("", |name| name.name());
     // At impacts the places are those of the walls: velocities are drawn.
     let at_impacts = course.section == Some(PoincareSection::Impacts);
@@ -275,11 +281,54 @@ pub fn sweep_picture(sweep: &MotionSweep) -> Result<String, FigureError> {
         .zip(&points)
         .map(|(name, points)| dots(title, [varied, name], points))
         .collect();
+    figure(&panels, &sweep_in_words(course))
+}
+
+/// The starts in a plane, each in the colour of the attractor on which its motion settles, with the states of
+/// the attractors.
+fn basins_picture(
+    sweep: &MotionSweep,
+    basins: &Basins,
+    [across, up]: [&Symbol; 2],
+) -> Result<String, FigureError> {
+    let starts = |fate: Fate| -> Points {
+        let all = basins.fates.iter().zip(sweep.motions).filter(|(own, _)| **own == fate);
+        all.map(|(_, motion)| (motion.values[0], motion.values[1])).collect()
+    };
+    let states = &sweep.course.rates.states;
+    let place = |name: &Symbol| states.iter().position(|state| state == name).unwrap_or(0);
+    let last = CurveStyle::REGIONS.len() - 1;
+    let mut drawn: Vec<(String, Points, CurveStyle)> = Vec::new();
+    for (index, attractor) in basins.attractors.iter().enumerate().take(last) {
+        let label = match attractor.states.len() {
+            1 => format!("attractor {}", index + 1),
+            count => format!("attractor {}, {count} states", index + 1),
+        };
+        drawn.push((label, starts(Fate::Settled(index)), CurveStyle::REGIONS[index]));
+    }
+    let others = (last..basins.attractors.len()).flat_map(|index| starts(Fate::Settled(index)));
+    drawn.push(("other attractors".to_owned(), others.collect(), CurveStyle::REGIONS[last]));
+    drawn.push(("does not settle".to_owned(), starts(Fate::Unsettled), CurveStyle::NO_MOTION));
+    drawn.push(("ends early".to_owned(), starts(Fate::Ended), CurveStyle::OUTSIDE));
+    let of_attractors = basins.attractors.iter().flat_map(|attractor| &attractor.states);
+    let of_attractors = of_attractors.map(|state| (state[place(across)], state[place(up)]));
+    let marks = CurveStyle::SECOND_MARKED_POINTS;
+    drawn.push(("states of the attractors".to_owned(), of_attractors.collect(), marks));
+    drawn.retain(|(_, points, _)| !points.is_empty());
+    let curves = drawn.iter().map(|(label, points, style)| curve(label, points, *style));
+    let labels = [across, up].map(|name| name.name().replace('\'', "′"));
+    let panels =
+        [panel("Basins of attraction", [&labels[0], &labels[1]], curves.collect(), vec![])];
+    figure(&panels, &sweep_in_words(sweep.course))
+}
+
+/// The equations of many motions, the section and the times, in words.
+fn sweep_in_words(course: &TrajectoryRequest) -> String {
     let equations = equations_in_words(course);
     let section = course.section.as_ref().map(|section| format!(". {}", section_in_words(section)));
     let after = match course.after > 0.0 {
         true => format!(", from t = {} to {}", decimal(course.after), decimal(course.duration)),
         false => format!(", to t = {}", decimal(course.duration)),
     };
-    figure(&panels, &format!("{equations}{}{after}", section.unwrap_or_default()))
+    format!("{equations}{}{after}", section.unwrap_or_default())
 }

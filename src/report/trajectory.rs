@@ -10,8 +10,8 @@ use crate::expr::Expr;
 use crate::symbol::Symbol;
 use crate::system::{Integrator, PathEnd};
 use crate::trajectory::{
-    Crossing, DISPLACEMENT, EventOccurrence, Impact, LyapunovExponent, PoincareSection,
-    SweptMotion, Trajectory, TrajectoryRequest, WallRecord, WallRest, in_words,
+    Basins, Crossing, DISPLACEMENT, EventOccurrence, Fate, Impact, LyapunovExponent,
+    PoincareSection, SweptMotion, Trajectory, TrajectoryRequest, WallRecord, WallRest, in_words,
 };
 use crate::wall::Wall;
 
@@ -382,13 +382,53 @@ pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
     if ended > 0 {
         last.push(Block::Note(format!("{ended} of them end early")));
     }
-    Document {
-        sections: vec![
-            course.equations.iter().map(equation).collect(),
-            vec![Block::table(head, rows)],
-            last,
+    /// Largest number of starts that are listed above their attractors.
+    const MOST_STARTS: usize = 100;
+    let basins = sweep.basins();
+    let are_many = basins.is_some() && sweep.motions.len() > MOST_STARTS;
+    let mut sections: Vec<Vec<Block>> = vec![course.equations.iter().map(equation).collect()];
+    sections.extend((!are_many).then(|| vec![Block::table(head, rows)]));
+    sections.push(last);
+    sections.extend(basins.map(|basins| attractors(sweep, &basins)));
+    Document { sections }
+}
+
+/// The attractors of motions from many starts, with how many of them settle on each.
+fn attractors(sweep: &MotionSweep, basins: &Basins) -> Vec<Block<'static>> {
+    let mut head = vec!["attractor", "motions", "share", "states"];
+    head.extend(sweep.course.rates.states.iter().map(|name| name.name()));
+    let all = basins.fates.len().max(1) as f64;
+    let rows = basins.attractors.iter().enumerate().map(|(index, attractor)| {
+        let share = format!("{} %", significant(100.0 * attractor.motions as f64 / all, 3));
+        let counts = [
+            (index + 1).to_string(),
+            attractor.motions.to_string(),
+            share,
+            attractor.states.len().to_string(),
+        ];
+        let lowest = attractor.states.first().into_iter().flatten();
+        counts.into_iter().chain(lowest.map(|value| significant(*value, 6))).collect()
+    });
+    let mut blocks = match basins.attractors.is_empty() {
+        true => vec![],
+        false => vec![
+            Block::Heading(
+                "Attractors, with the number of their states on the section and the lowest"
+                    .to_owned(),
+            ),
+            Block::table(head, rows),
         ],
+    };
+    for (fate, words) in [
+        (Fate::Unsettled, "do not repeat themselves on the section by the end"),
+        (Fate::Ended, "end early"),
+    ] {
+        let count = basins.count(fate);
+        if count > 0 {
+            blocks.push(Block::Note(format!("{count} motions {words}")));
+        }
     }
+    blocks
 }
 
 /// Many motions to be reported.
@@ -400,6 +440,16 @@ pub struct MotionSweep<'a> {
     pub names: &'a [Symbol],
     /// The motions, the last name varying fastest.
     pub motions: &'a [SweptMotion],
+}
+
+impl MotionSweep<'_> {
+    /// The attractors on which the motions settle; `None` unless states of the start alone are varied, and the
+    /// states are recorded on a section.
+    pub fn basins(&self) -> Option<Basins> {
+        let states = &self.course.rates.states;
+        let are_starts = self.names.iter().all(|name| states.contains(name));
+        (are_starts && self.course.section.is_some()).then(|| Basins::new(self.motions))
+    }
 }
 
 fn account<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {

@@ -4,9 +4,13 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use lindstedt::coupled::CoupledEquations;
+use lindstedt::event::StateEvent;
 use lindstedt::expr::parse_expression;
 use lindstedt::system::{Integrator, LANES, PathEnd};
-use lindstedt::trajectory::{PoincareSection, TrajectoryError, TrajectoryRequest, sweep};
+use lindstedt::trajectory::{
+    Basins, Fate, PoincareSection, TrajectoryError, TrajectoryRequest, sweep,
+};
 use lindstedt::{Interrupt, Oscillator, Symbol};
 
 fn course(equation: &str, start: &[(&str, f64)], duration: f64) -> TrajectoryRequest {
@@ -286,5 +290,60 @@ fn a_motion_of_a_sweep_is_that_followed_alone() {
             assert_eq!(swept.crossings, alone.crossings(), "{equation}");
             assert_eq!(swept.touches, alone.touches(), "{equation}");
         }
+    }
+}
+
+/// Starts inside the separatrix of a damped double well settle in their own well: where x'^2/2 - x^2/2 + x^4/4
+/// is below zero.
+#[test]
+fn basins_of_two_wells_hold_the_starts_inside_the_separatrix() {
+    let mut wells = course("x'' + x'/5 - x + x^3 = 0", &[], 200.0);
+    wells.section = every("1");
+    wells.after = 150.0;
+    let places =
+        (-8..=8).flat_map(|x| (-4..=4).map(move |v| vec![0.19 * f64::from(x), 0.2 * f64::from(v)]));
+    let grid: Vec<Vec<f64>> = places.filter(|start| *start != [0.0, 0.0]).collect();
+    let motions = sweep(&wells, &["x".into(), "x'".into()], &grid, || ()).expect("motions");
+    let basins = Basins::new(&motions);
+    assert_eq!(basins.attractors.len(), 2);
+    // The mirror image of a start is a start.
+    assert!(basins.attractors.iter().all(|own| own.motions == grid.len() / 2), "{basins:?}");
+    let mut inside = 0;
+    for (start, fate) in grid.iter().zip(&basins.fates) {
+        let &[x, v] = start.as_slice() else { panic!("a place and a velocity") };
+        let Fate::Settled(index) = *fate else { panic!("{start:?} {fate:?}") };
+        let end = &basins.attractors[index].states[0];
+        assert!((end[0].abs() - 1.0).abs() < 1e-4 && end[1].abs() < 1e-4, "{end:?}");
+        if 0.5 * v * v - 0.5 * x * x + 0.25 * x.powi(4) < 0.0 {
+            assert!(end[0] * x > 0.0, "{start:?} {end:?}");
+            inside += 1;
+        }
+    }
+    assert!(inside > 40, "{inside}");
+}
+
+/// The logistic map as an event: its cycles of one and two states in closed form, and others by their number.
+#[test]
+fn attractors_have_as_many_states_as_their_cycles() {
+    let equations = CoupledEquations::parse("x' = 0; y' = 0").expect("equations");
+    let states = ["x".into(), "y".into()];
+    let logistic = StateEvent::parse("sin(t) > 0: x = r*x*(1 - x)", &states).expect("an event");
+    let mut course = TrajectoryRequest::of_coupled(&equations).with_events(vec![logistic]);
+    course.section = every("2*pi");
+    (course.duration, course.after) = (TAU * 200.5, TAU * 150.0);
+    let grid: Vec<Vec<f64>> = [0.1, 0.35, 0.62, 0.9].map(|x| vec![x]).into();
+    for (r, count) in [(2.5, 1), (3.2, 2), (3.5, 4), (3.83, 3)] {
+        course.values = [("r".into(), r)].into();
+        let motions = sweep(&course, &["x".into()], &grid, || ()).expect("motions");
+        let basins = Basins::new(&motions);
+        let [attractor] = &basins.attractors[..] else { panic!("r = {r}: {basins:?}") };
+        assert_eq!((attractor.states.len(), attractor.motions), (count, 4), "r = {r}");
+        let lowest = attractor.states[0][0];
+        let expected = match count {
+            1 => 1.0 - 1.0 / r,
+            2 => (r + 1.0 - ((r - 3.0) * (r + 1.0)).sqrt()) / (2.0 * r),
+            _ => continue,
+        };
+        assert!((lowest - expected).abs() < 1e-9, "r = {r}: {lowest} {expected}");
     }
 }

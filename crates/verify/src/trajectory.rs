@@ -12,6 +12,7 @@
 //! are none, as at rest exactly at the touch, Runge-Kutta takes the whole motion. Where dry friction, `sgn(x')`, `sgn(x' - c)` on a belt or `sgn(x' - y')`
 //! between two bodies, holds something, it stays until the force on it is more than friction bears.
 
+mod attractors;
 mod energy;
 mod error;
 mod event_run;
@@ -44,6 +45,7 @@ use crate::system::{
 use crate::wall::Wall;
 use error::names;
 
+pub use attractors::{Attractor, Basins, Fate};
 pub use error::TrajectoryError;
 pub use prepared::{PreparedTrajectory, TrajectoryEnd};
 pub use section::{Crossing, MOST_CROSSINGS, PoincareSection};

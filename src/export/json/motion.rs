@@ -11,8 +11,8 @@ use crate::report::MotionSweep;
 use crate::report::TrajectoryReport;
 use crate::system::{Integrator, PathEnd};
 use crate::trajectory::{
-    Crossing, EventOccurrence, Impact, PoincareSection, Trajectory, TrajectoryRequest, WallRest,
-    in_words,
+    Attractor, Crossing, EventOccurrence, Fate, Impact, PoincareSection, Trajectory,
+    TrajectoryRequest, WallRest, in_words,
 };
 use crate::wall::Wall;
 
@@ -398,6 +398,20 @@ pub struct MotionSweepDocument {
     pub varied: Vec<String>,
     /// The motions, in order.
     pub motions: Vec<SweptMotionDocument>,
+    /// The attractors on which motions from many starts settle, that of the most motions first; left out where
+    /// anything but a start is varied, or without a section.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attractors: Option<Vec<AttractorDocument>>,
+}
+
+/// A motion that repeats itself on a section, on which others settle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "Attractor"))]
+pub struct AttractorDocument {
+    /// Its states on the section in their order, coordinates and velocities.
+    pub states: Vec<Map<f64>>,
+    /// The number of motions that settle on it.
+    pub motions: usize,
 }
 
 /// One of many motions.
@@ -418,6 +432,9 @@ pub struct SweptMotionDocument {
     /// The number of events; left out without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub events: Option<usize>,
+    /// The attractor on which it settles, counted from 0; left out if it settles on none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attractor: Option<usize>,
     /// Why it ends where it does.
     pub stopped: String,
     /// Whether it was followed as long as asked.
@@ -431,7 +448,12 @@ pub fn motion_sweep(sweep: &MotionSweep) -> MotionSweepDocument {
     let rest = |all: Map<f64>| -> Map<f64> {
         all.into_iter().filter(|(name, _)| !is_varied(name)).collect()
     };
-    let motions = sweep.motions.iter().map(|motion| SweptMotionDocument {
+    let basins = sweep.basins();
+    let attractor = |index: usize| match basins.as_ref().map(|basins| basins.fates[index]) {
+        Some(Fate::Settled(attractor)) => Some(attractor),
+        _ => None,
+    };
+    let motions = sweep.motions.iter().enumerate().map(|(index, motion)| SweptMotionDocument {
         values: named(sweep.names.iter().zip(motion.values.iter().copied())),
         final_state: MotionSample::new(course, motion.end, &motion.state),
         extremes: named(course.coordinates.iter().zip(motion.extremes.iter().copied())),
@@ -441,6 +463,7 @@ pub fn motion_sweep(sweep: &MotionSweep) -> MotionSweepDocument {
             .map(|section| section_document(course, section, (&motion.crossings, &motion.touches))),
         impacts: (!course.walls.is_empty()).then_some(motion.impacts),
         events: (!course.events.is_empty()).then_some(motion.events),
+        attractor: attractor(index),
         stopped: in_words(motion.reason).to_owned(),
         complete: motion.reason == PathEnd::Reached,
     });
@@ -454,5 +477,12 @@ pub fn motion_sweep(sweep: &MotionSweep) -> MotionSweepDocument {
         after: course.after,
         varied: texts(sweep.names),
         motions: motions.collect(),
+        attractors: basins.as_ref().map(|basins| {
+            let of = |attractor: &Attractor| AttractorDocument {
+                states: attractor.states.iter().map(|state| states(course, state)).collect(),
+                motions: attractor.motions,
+            };
+            basins.attractors.iter().map(of).collect()
+        }),
     }
 }

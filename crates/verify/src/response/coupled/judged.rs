@@ -168,25 +168,36 @@ impl CoupledProblem<'_> {
             let states = path.and_then(|path| path.states_at(time.rem_euclid(period)));
             states.map_or(f64::NAN, |states| quantity(&states[..n]))
         };
-        // The highest point near the highest sample, by parabolas through three points.
+        // The highest point near the highest sample, by parabolas through three points; where one has its
+        // vertex lower than a point, as beside a jump of the force at the turn, from the highest of them.
         let extreme = |sign: f64| {
+            const PARABOLAS: usize = 3;
+            const MOST_TRIALS: usize = 30;
             let highest = (0..SAMPLES)
                 .max_by(|one, other| (sign * values[*one]).total_cmp(&(sign * values[*other])))
                 .unwrap_or(0);
             let (mut middle, mut width) = (step * highest as f64, step);
             let mut best = values[highest];
-            for _ in 0..3 {
+            let mut parabolas = 0;
+            for _ in 0..MOST_TRIALS {
                 let [left, right] = [middle - width, middle + width].map(value);
                 let curve = left - 2.0 * best + right;
                 let shift = if curve == 0.0 { 0.0 } else { 0.5 * width * (left - right) / curve };
-                if !shift.is_finite() || shift.abs() > width {
-                    break;
+                let there = if shift.abs() <= width { value(middle + shift) } else { f64::NAN };
+                if sign * there >= sign * best {
+                    (middle, best, width) = (middle + shift, there, 0.1 * width);
+                    parabolas += 1;
+                    if parabolas == PARABOLAS {
+                        break;
+                    }
+                    continue;
                 }
-                let there = value(middle + shift);
-                if there.is_nan() || sign * there < sign * best {
-                    break;
+                for (side, there) in [(-width, left), (width, right)] {
+                    if sign * there > sign * best {
+                        (middle, best) = (middle + side, there);
+                    }
                 }
-                (middle, best, width) = (middle + shift, there, 0.1 * width);
+                width *= 0.5;
             }
             best
         };

@@ -1,0 +1,137 @@
+//! The attractors on which many motions settle, by their last states on a section, and the basin of each.
+//!
+//! ```text
+//! period n of a motion:  the least n with y_k = y_(k-n) for its last n states y_k on the section
+//! one attractor:         the same n, and the last n states in the same order from some state on
+//! ```
+//!
+//! States are the same if they differ by less than a thousandth of the extent of all last states. (C. S. Hsu, *Cell-to-Cell
+//! Mapping*, Springer 1987, chapter 1, for basins by simulation.)
+//!
+//! In: the motions of a [sweep](super::sweep) with a section. Out: the attractors, the most frequent first, and on which each
+//! motion settles. Cost: the number of motions times that of the attractors.
+
+use super::SweptMotion;
+use crate::system::PathEnd;
+
+/// Largest number of states on the section after which a motion repeats itself.
+const MOST_STATES: usize = 16;
+
+/// Difference of two states, in the extent of all last states, below which they are the same.
+const SAME: f64 = 1e-3;
+
+/// A motion that repeats itself on a section, on which others settle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attractor {
+    /// Its states on the section, coordinates, then velocities, beginning with the lowest.
+    pub states: Vec<Vec<f64>>,
+    /// The number of motions that settle on it.
+    pub motions: usize,
+}
+
+/// What becomes of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fate {
+    /// It settles on the attractor of this number.
+    Settled(usize),
+    /// It does not repeat itself: it has not settled yet, or takes more than sixteen states, or is chaotic.
+    Unsettled,
+    /// It ended before its time, as one that grows without bound.
+    Ended,
+}
+
+/// The attractors of many motions and the fate of each of these.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Basins {
+    /// The attractors, that of the most motions first.
+    pub attractors: Vec<Attractor>,
+    /// The fate of each motion, in their order.
+    pub fates: Vec<Fate>,
+}
+
+impl Basins {
+    /// Finds the attractors of motions that have states on a section.
+    pub fn new(motions: &[SweptMotion]) -> Self {
+        let sizes = extent(motions);
+        let is_same = |one: &[f64], other: &[f64]| {
+            one.iter().zip(other).zip(&sizes).all(|((a, b), size)| (a - b).abs() <= SAME * size)
+        };
+        let mut attractors: Vec<Attractor> = Vec::new();
+        let mut fates = Vec::with_capacity(motions.len());
+        for motion in motions {
+            if motion.reason != PathEnd::Reached {
+                fates.push(Fate::Ended);
+                continue;
+            }
+            let last: Vec<&[f64]> =
+                motion.crossings.iter().rev().map(|crossing| crossing.state.as_slice()).collect();
+            let repeats = |n: &usize| (0..*n).all(|k| is_same(last[k], last[k + n]));
+            let period = (1..=MOST_STATES.min(last.len() / 2)).find(repeats);
+            let Some(n) = period else {
+                fates.push(Fate::Unsettled);
+                continue;
+            };
+            let states: Vec<&[f64]> = last[..n].iter().rev().copied().collect();
+            let is_known = |known: &Attractor| {
+                known.states.len() == n
+                    && (0..n).any(|from| {
+                        (0..n).all(|k| is_same(states[(from + k) % n], &known.states[k]))
+                    })
+            };
+            let place = attractors.iter().position(is_known).unwrap_or_else(|| {
+                let states = from_lowest(&states);
+                attractors.push(Attractor { states, motions: 0 });
+                attractors.len() - 1
+            });
+            attractors[place].motions += 1;
+            fates.push(Fate::Settled(place));
+        }
+        // The most frequent first; of two as frequent that which was met first.
+        let mut order: Vec<usize> = (0..attractors.len()).collect();
+        order.sort_by_key(|place| std::cmp::Reverse(attractors[*place].motions));
+        for fate in &mut fates {
+            if let Fate::Settled(place) = fate {
+                *place = order.iter().position(|old| old == place).unwrap_or(*place);
+            }
+        }
+        let attractors = order.into_iter().map(|place| attractors[place].clone()).collect();
+        Self { attractors, fates }
+    }
+
+    /// The number of motions with this fate.
+    pub fn count(&self, fate: Fate) -> usize {
+        self.fates.iter().filter(|own| **own == fate).count()
+    }
+}
+
+/// The extent of the last states of all motions that did not end early, for each state; at least a small part of
+/// what is varied, where a state dies out.
+fn extent(motions: &[SweptMotion]) -> Vec<f64> {
+    const SMALL: f64 = 0.01;
+    let starts = motions.iter().flat_map(|motion| &motion.values);
+    let least = SMALL * starts.map(|value| value.abs()).fold(0.0, f64::max);
+    let complete = || motions.iter().filter(|motion| motion.reason == PathEnd::Reached);
+    let states = || complete().flat_map(|motion| motion.crossings.iter().rev().take(MOST_STATES));
+    let count = complete().map(|motion| motion.state.len()).max().unwrap_or(0);
+    let of_state = |index: usize| {
+        let values = states().map(|crossing| crossing.state[index]);
+        let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+            [low.min(value), high.max(value)]
+        });
+        // Where all are one state, its size.
+        let size = high.abs().max(low.abs());
+        let extent = if high - low > SAME * size { high - low } else { size };
+        extent.max(least)
+    };
+    (0..count).map(of_state).collect()
+}
+
+/// The states of a cycle in their order, from that on which is lowest, by the first coordinate, then the next.
+fn from_lowest(states: &[&[f64]]) -> Vec<Vec<f64>> {
+    let order = |one: &usize, other: &usize| {
+        let pairs = states[*one].iter().zip(states[*other]);
+        pairs.map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne()).unwrap_or(one.cmp(other))
+    };
+    let lowest = (0..states.len()).min_by(order).unwrap_or(0);
+    (0..states.len()).map(|k| states[(lowest + k) % states.len()].to_vec()).collect()
+}

@@ -17,6 +17,9 @@
 //! in `damped/`; limit cycles and driven motions of several coordinates have a
 //! [`CoupledCertificate`], and the same theorem.
 //!
+//! Periodic impact orbits of a linear driven oscillator between rigid walls have an
+//! [`OrbitCertificate`] and the theorem in `orbit/`.
+//!
 //! The way in which the refined motion was found does not matter (`candidate.rs`: Newton's
 //! iteration): the proof rests on `theorem.rs` and on the arithmetic of `force.rs`,
 //! `fourier_series.rs` and balls. A certificate that fails says nothing about the formula.
@@ -32,6 +35,7 @@ mod impact;
 mod law;
 mod law_on_range;
 mod modes;
+mod orbit;
 mod radii_polynomial;
 mod sheet;
 mod theorem;
@@ -52,6 +56,10 @@ pub use law_on_range::{
     MotionsOfLaw, StartOfLaw, TrueFrequency, check_law, restitution,
 };
 pub use modes::{ModeAmplitude, ModeCertificate, certify_mode, certify_mode_motion, check_mode};
+pub use orbit::{
+    CertifiedOrbit, ClaimedImpact, ClaimedOrbit, EnclosedImpact, ExactHarmonic, ExactWall,
+    OrbitCertificate, OrbitNotProved, WalledOscillator, certify_orbit, check_orbits,
+};
 pub use radii_polynomial::{NotProved, Proof};
 pub use validity::{RangeEnd, Validity, validity};
 
@@ -168,6 +176,14 @@ pub enum CheckError {
     /// A law is not proved on its range.
     #[error("not certified: {0}")]
     Law(LawNotProved),
+    /// An impact orbit is not proved.
+    #[error("not certified: orbit {orbit}: {reason}")]
+    Orbit {
+        /// The number of the orbit, from 1 on.
+        orbit: usize,
+        /// The reason.
+        reason: OrbitNotProved,
+    },
     /// The motion is proved, but its stability is another one than is claimed, or not proved.
     #[error("not as claimed: the stability that is claimed is not proved")]
     Stability,

@@ -153,7 +153,7 @@ pub struct ClaimedStability {
 
 impl ClaimedStability {
     /// The claims that follow from a proof.
-    pub(super) fn of(stability: &Stability) -> Self {
+    pub(in crate::certificate) fn of(stability: &Stability) -> Self {
         /// Decimal digits of the claims: a multiplier may be near one.
         const DIGITS: usize = 9;
         let around = |value: f64| neighbours(&from_f64(value).unwrap_or_default(), DIGITS);
@@ -168,7 +168,10 @@ impl ClaimedStability {
     ///
     /// # Errors
     /// A claim that is not proved.
-    pub(super) fn hold(&self, proved: Option<&Stability>) -> Result<(), CheckError> {
+    pub(in crate::certificate) fn hold(
+        &self,
+        proved: Option<&Stability>,
+    ) -> Result<(), CheckError> {
         let proved = proved.unwrap_or(&Stability::UNKNOWN);
         if self.attracts.is_some() && self.attracts != proved.attracts {
             return Err(CheckError::Stability);
@@ -249,27 +252,32 @@ pub(super) fn multipliers(problem: &DampedProblem, radius: Bound) -> Option<Mult
     let determinant = FourierSeries::constant(exponent).exponential()?.at_zero();
     let trace = trace(&Monodromy::new([&damping, &stiffness])?.matrix);
     let trace = WORKING.converted(&trace, BALLS);
-    let edge = WORKING.sum(&WORKING.integer(1), &determinant);
-    let [least, least_trace, least_edge] =
-        [&determinant, &trace, &edge].map(|ball| WORKING.distance_from_zero(ball));
-    let [most, most_trace, most_edge] =
-        [&determinant, &trace, &edge].map(|ball| WORKING.magnitude(ball).value());
-    let attracts = match most < 1.0 && most_trace < least_edge {
-        true => Some(true),
-        false if least > 1.0 || least_trace > most_edge => Some(false),
-        false => None,
-    };
-    Some(Multipliers {
-        largest: largest(&determinant, &trace).map(|ball| Enclosure::from_ball(&ball)),
-        determinant: Enclosure::from_ball(&determinant),
-        trace: Enclosure::from_ball(&trace),
-        attracts,
-    })
+    Some(Multipliers::from_trace(&trace, &determinant))
 }
 
 impl Multipliers {
+    /// Two multipliers of this sum and product.
+    pub(in crate::certificate) fn from_trace(trace: &Ball, determinant: &Ball) -> Self {
+        let edge = WORKING.sum(&WORKING.integer(1), determinant);
+        let [least, least_trace, least_edge] =
+            [determinant, trace, &edge].map(|ball| WORKING.distance_from_zero(ball));
+        let [most, most_trace, most_edge] =
+            [determinant, trace, &edge].map(|ball| WORKING.magnitude(ball).value());
+        let attracts = match most < 1.0 && most_trace < least_edge {
+            true => Some(true),
+            false if least > 1.0 || least_trace > most_edge => Some(false),
+            false => None,
+        };
+        Self {
+            largest: largest(determinant, trace).map(|ball| Enclosure::from_ball(&ball)),
+            determinant: Enclosure::from_ball(determinant),
+            trace: Enclosure::from_ball(trace),
+            attracts,
+        }
+    }
+
     /// Returns the stability that the multipliers prove.
-    pub(super) fn stability(&self) -> Stability {
+    pub(in crate::certificate) fn stability(&self) -> Stability {
         Stability { attracts: self.attracts, largest: self.largest.as_ref().map(Enclosure::size) }
     }
 }

@@ -1,7 +1,7 @@
 """Checks a certificate of `lindstedt certify` in whole numbers alone: python3 check_certificate.py FILE
 
 A second program for the same theorems (docs/certificates.md), of motions that conserve energy, limit cycles and driven motions, of one
-coordinate or several, whose equations have polynomials, sin, cos and exp, and of laws on a range: the largest error of a formula for the
+coordinate or several, whose equations have polynomials, sin, cos and exp, of periodic orbits of a linear oscillator that hits walls, and of laws on a range: the largest error of a formula for the
 frequency over all amplitudes up to one, or all values of a parameter, up to infinity too, of one for that of a nonlinear normal mode over
 a range of its amplitude, or of one for the duration of a contact over all speeds up to one. What a file claims of the stability is not looked at. A number is a pair (m, r) of integers, all reals within r of
 m, in units of 2^-P; a series is a list of cosine coefficients, one of sine coefficients, and the norm of what is in neither. Prints what is proved, from below and from above, after every claim of the
@@ -29,6 +29,7 @@ MOTION, MODE, CYCLE, DRIVEN = "x''+f(x)=0", "q''+f(q)=0", "x''+g(x)*x'+h(x)=0", 
 CYCLES, ALL_DRIVEN = "q''+g(q)*q'+h(q)=0", "q''+g(q)*q'+h(q,c,s)=0"
 LAW, CONTACT = "x''+f(x,p)=0", "x''+f(x,x')=0"
 LAW_OF_MODE = "a*v''+mu*f(a*v)=0"
+WALLS = "x''+c*x'+k*x=constant+cosine*cos(Omega*t)+sine*sin(Omega*t)"
 FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log")    # of a law; a force has three of them
 smallest = ONE >> 150                       # harmonics below this at the end of a series are a part of its tail
 begun = time.monotonic()
@@ -2321,6 +2322,208 @@ def check_law(z):
     return {"law": f"{z['quantity']} = {z['law']}", "range": [z["from"], z["to"]], "largest_error": [decimal(below), decimal(above, 1)]}
 
 
+# Impact orbits: x'' + c x' + k x = p + a cos(phi) + b sin(phi) between walls, with the phase for time and speeds by phase.
+
+def rows_times(A, T):                       # of two rows each
+    return [[total(mul(A[i][l], T[l][j]) for l in range(2)) for j in range(3)] for i in range(2)]
+
+
+def after(second, first):                   # x -> A x + r, twice
+    moved = rows_times(second, first)
+    return [[moved[i][0], moved[i][1], add(moved[i][2], second[i][2])] for i in range(2)]
+
+
+def motion_over(c, k, t):
+    """Rows of exp(t M), M = ((0, 1, 0), (-k, -c, 1), (0, 0, 0)): the motion over t, and in the last column from rest under the force one."""
+    if t[1] and t[0]:
+        return after(motion_over(c, k, (0, t[1])), motion_over(c, k, (t[0], 0)))
+    in_time()
+    largest_row, halvings = max(ONE, size(c) + size(k) + ONE), 0
+    while part_of(size(t), largest_row) << 1 > ONE << halvings:
+        halvings += 1
+    demand(halvings < 60, "numbers of an orbit that are too large")
+    y = over(t, 1 << halvings)
+    B = [[ZERO, y, ZERO], [minus_ball(mul(k, y)), minus_ball(mul(c, y)), y]]
+    T, E = B, [[(ONE, 0), ZERO, ZERO], [ZERO, (ONE, 0), ZERO]]
+    for n in range(2, 52):
+        E = [[add(E[i][j], T[i][j]) for j in range(3)] for i in range(2)]
+        T = [[over(a, n) for a in row] for row in rows_times(B, T)]
+    E = [[enlarged(a, (ONE >> 250) + 1) for a in row] for row in E]    # 2 (1/2)^51/51! is below 2^-250
+    for _ in range(halvings):
+        E = after(E, E)
+    return E
+
+
+def minus_ball(a):
+    return -a[0], a[1]
+
+
+def wave_at(wave, angle):                   # value and two derivatives
+    (sine, cosine), (constant_part, a, b) = angle, wave
+    moving, slope = add(mul(a, cosine), mul(b, sine)), add(mul(b, cosine), mul(a, sine), -1)
+    return add(constant_part, moving), slope, minus_ball(moving)
+
+
+class Walled:
+    def __init__(self, z):
+        keys(z, {"schema", "ode", "c", "k", "driving_frequency", "load", "walls", "bits", "orbits"}, set(), "the file")
+        omega = fraction(z["driving_frequency"], "driving_frequency")
+        demand(omega > 0, "a frequency that is not positive")
+        c, k = fraction(z["c"], "c") / omega, fraction(z["k"], "k") / omega ** 2
+        p, a, b = (part / omega ** 2 for part in self.parts(z["load"], "load"))
+        determinant = (k - 1) ** 2 + c ** 2
+        demand(determinant > 0, "a drive at the natural frequency without damping")
+        # (k - 1) U + c V = a, (k - 1) V - c U = b.
+        self.wave = ZERO, number(((k - 1) * a - c * b) / determinant), number(((k - 1) * b + c * a) / determinant)
+        self.omega, self.c, self.k, self.p = number(omega), number(c), number(k), number(p)
+        self.load = number(p), number(a), number(b)
+        demand(isinstance(z["walls"], list) and len(z["walls"]) in (1, 2), "one wall or two in walls")
+        self.walls = []
+        for wall in z["walls"]:
+            keys(wall, {"side", "place", "restitution"}, set(), "walls")
+            demand(wall["side"] in ("above", "below"), "above or below in side")
+            e = fraction(wall["restitution"], "restitution")
+            demand(0 <= e <= 1, "a restitution that is not from 0 to 1")
+            self.walls.append((1 if wall["side"] == "below" else -1, tuple(map(number, self.parts(wall["place"], "place"))), number(e)))
+        demand(len({side for side, *_ in self.walls}) == len(self.walls), "two walls on one side")
+
+    @staticmethod
+    def parts(value, what):
+        keys(value, {"constant", "cosine", "sine"}, set(), what)
+        return [fraction(value[key], what) for key in ("constant", "cosine", "sine")]
+
+    def start(self, wall, angle, u):            # just after an impact, by the phase, by the speed
+        side, place, e = self.walls[wall]
+        x, slope, bent = wave_at(place, angle)
+        return (x, add(slope, mul(e, u), side)), (slope, bent), (ZERO, scale(e, side))
+
+    def free(self, E, angle, state):            # the motion without the steady wave
+        x, slope, _ = wave_at(self.wave, angle)
+        z = add(state[0], x, -1), add(state[1], slope, -1)
+        return [total((mul(E[i][0], z[0]), mul(E[i][1], z[1]), mul(E[i][2], self.p))) for i in range(2)]
+
+    def pulled(self, x, slope, force):
+        return total((force, minus_ball(mul(self.c, slope)), minus_ball(mul(self.k, x))))
+
+    def flights(self, walls, phases, turn):
+        n = len(walls)
+        for i in range(n):
+            j = (i + 1) % n
+            t = add(phases[j], phases[i], -1) if n > 1 else ZERO
+            yield i, j, add(t, turn) if j == 0 else t
+
+    def equations(self, walls, phases, speeds, turn):
+        n = len(walls)
+        angles = [waves_of_number(phase) for phase in phases]
+        F, D = [], [[ZERO] * (2 * n) for _ in range(2 * n)]
+        for i, j, t in self.flights(walls, phases, turn):
+            E = motion_over(self.c, self.k, t)
+            state, by_phase, by_speed = self.start(walls[i], angles[i], speeds[i])
+            side, place, _ = self.walls[walls[j]]
+            z = self.free(E, angles[i], state)
+            left, right, target = wave_at(self.wave, angles[i]), wave_at(self.wave, angles[j]), wave_at(place, angles[j])
+            later = z[1], self.pulled(z[0], z[1], self.p)
+            F.append(total((right[0], z[0], minus_ball(target[0]))))
+            F.append(total((right[1], z[1], minus_ball(target[1]), scale(speeds[j], side))))
+            start = [add(by_phase[l], left[l + 1], -1) for l in range(2)]
+            through = lambda state, row: add(mul(E[row][0], state[0]), mul(E[row][1], state[1]))
+            for row in range(2):
+                own = D[2 * i + row]
+                own[2 * i] = add(own[2 * i], add(through(start, row), later[row], -1))
+                own[2 * j] = total((own[2 * j], right[row + 1], later[row], minus_ball(target[row + 1])))
+                own[2 * i + 1] = add(own[2 * i + 1], through(by_speed, row))
+            D[2 * i + 1][2 * j + 1] = add(D[2 * i + 1][2 * j + 1], (side * ONE, 0))
+        return F, D
+
+    def newton(self, walls, middles, turn, radii, B):
+        """Krawczyk: |B F| + |1 - B D| r < r, D over the whole box; the left side."""
+        n = len(walls)
+        box = [(m[0], r) for m, r in zip(middles, radii)]
+        F, _ = self.equations(walls, middles[::2], middles[1::2], turn)
+        _, D = self.equations(walls, box[::2], box[1::2], turn)
+        proved = []
+        for i, row in enumerate(B):
+            step = size(total(map(mul, row, F)))
+            images = (total(mul(row[l], D[l][j]) for l in range(2 * n)) for j in range(2 * n))
+            away = sum(part_of(size(add(image, (ONE if i == j else 0, 0), -1)), radii[j]) + 1 for j, image in enumerate(images))
+            demand(step + away < radii[i], "an orbit within these radii is not proved")
+            proved.append(step + away)
+        return proved
+
+    def stays_off(self, walls, phases, speeds, i, j, t):
+        angle = waves_of_number(phases[i])
+        state = self.start(walls[i], angle, speeds[i])[0]
+        parts = [(4, index) for index in range(16)]
+        for looked_at in itertools.count():
+            if not parts:
+                return
+            halvings, index = parts.pop()
+            middle, half = mul(t, (2 * index + 1 << P - halvings - 1, 0)), size(t) >> halvings + 1
+            begins, ends, split = index == 0, index + 1 == 1 << halvings, halvings < 24 and looked_at < 20000
+
+            def at_time(time):
+                E, turned_to = motion_over(self.c, self.k, time), waves_of_number(add(phases[i], time))
+                z, w = self.free(E, angle, state), wave_at(self.wave, turned_to)
+                return turned_to, add(w[0], z[0]), add(w[1], z[1])
+            inside, (there, x, slope) = at_time(middle), at_time((middle[0], middle[1] + half + 1))
+            bent = self.pulled(x, slope, wave_at(self.load, there)[0])
+            for wall, (side, place, e) in enumerate(self.walls):
+                here, all_of_it = wave_at(place, inside[0]), wave_at(place, there)
+                rate_of, bend = scale(add(slope, all_of_it[1], -1), side), scale(add(bent, all_of_it[2], -1), side)
+                gap = enlarged(scale(add(inside[1], here[0], -1), side), part_of(half + 1, size(rate_of)) + 1)
+                rate_of = enlarged(scale(add(inside[2], here[1], -1), side), part_of(half + 1, size(bend)) + 1)
+                grows = positive(rate_of) if e[0] else positive(bend)
+                if not (positive(gap) or begins and wall == walls[i] and grows or ends and wall == walls[j] and positive(minus_ball(rate_of))):
+                    demand(split, f"between impacts the orbit is not proved to stay off wall {wall + 1}")
+                    parts += [(halvings + 1, 2 * index + 1), (halvings + 1, 2 * index)]
+                    break
+
+
+def positive(a):
+    return a[0] > a[1]
+
+
+def check_orbits(z):
+    walled, bits = Walled(z), whole(z["bits"], 0, 224, "bits")
+    demand(isinstance(z["orbits"], list) and 1 <= len(z["orbits"]) <= 200, "a list of at most 200 orbits")
+    ends = lambda ball: [decimal(max(0, ball[0] - ball[1])), decimal(max(0, ball[0] + ball[1]), 1)]
+    return {"orbits": [{key: list(map(ends, balls)) for key, balls in check_orbit(walled, orbit, bits).items()} for orbit in z["orbits"]]}
+
+
+def check_orbit(walled, z, bits):
+    keys(z, {"periods", "impacts", "phase_radius", "speed_radius", "isolated_in_phase", "isolated_in_speed", "stability"}, set(), "orbits")
+    turn = scale(PI, 2 * whole(z["periods"], 1, 100, "periods"))
+    demand(isinstance(z["impacts"], list) and 1 <= len(z["impacts"]) <= 40, "a list of at most 40 impacts")
+    walls, middles, roundings = [], [], []
+    for impact in z["impacts"]:
+        keys(impact, {"wall", "phase", "speed"}, set(), "impacts")
+        walls.append(whole(impact["wall"], 1, len(walled.walls), "wall") - 1)
+        phase, speed = (dyadic(integer(impact[key], key), bits) for key in ("phase", "speed"))
+        u = quotient(speed, walled.omega)
+        middles += [phase, (u[0], 0)]
+        roundings += [0, u[1]]                  # a part of the radius
+    claims = [[claim(z[f"{name}_{what}"] if what == "radius" else z[f"isolated_in_{name}"], what) for name in ("phase", "speed")]
+              for what in ("radius", "isolated")]
+    radii = [[up(r.numerator * ONE, r.denominator) for r in pair] for pair in claims]
+    demand(all(r < ONE << 300 for pair in radii for r in pair), "a radius that is too large")
+    radii = [[one + other for one, other in zip([r[0], size(quotient((r[1], 0), walled.omega))] * len(walls), roundings)] for r in radii]
+    D = walled.equations(walls, middles[::2], middles[1::2], turn)[1]
+    demand(all(size(a) < ONE << 300 for row in D for a in row), "numbers of an orbit that are too large")
+    B = inverse_nearly([[a[0] / ONE for a in row] for row in D])
+    demand(all(map(math.isfinite, itertools.chain(*B))), "a derivative without an inverse")
+    B = [[number(Fraction(entry)) for entry in row] for row in B]
+    walled.newton(walls, middles, turn, radii[1], B)
+    proved = walled.newton(walls, middles, turn, radii[0], B)
+    balls = [(m[0], r) for m, r in zip(middles, proved)]
+    phases, speeds = balls[::2], balls[1::2]
+    demand(all(map(positive, speeds)), "an impact grazes the wall: its speed is not proved to be positive")
+    flights = list(walled.flights(walls, phases, turn))
+    demand(all(positive(t) for *_, t in flights), "the impacts are not in order of time")
+    for i, j, t in flights:
+        walled.stays_off(walls, phases, speeds, i, j, t)
+    return {"phases": phases, "speeds": [mul(u, walled.omega) for u in speeds]}
+
+
 def decimal_of(x):                          # for a sentence
     return f"{float(x):.6g}" if abs(x) < 10 ** 300 else "a large number"
 
@@ -2332,6 +2535,8 @@ def check(text):
     demand(isinstance(z, dict) and z.get("schema") == "lindstedt/certificate/1", "another schema")
     if z.get("ode") in (LAW, CONTACT, LAW_OF_MODE):
         return check_law(z)
+    if z.get("ode") == WALLS:
+        return check_orbits(z)
     demand(z.get("nu") == "1", "another schema")
     z = with_names_in_words(z)
     kind = z.get("ode")

@@ -315,7 +315,7 @@ RESULTS = {
     "simulate": "Simulation | Sweep | Motion | MotionSweep | Primary | PrimarySweep",
     "response": "Response",
     "absorber": "Absorber",
-    "orbits": "Orbits",
+    "orbits": "Orbits | OrbitCertificateDocument",
     "shortest": "Shortest | LawCertificateDocument",
     "friction": "Friction",
     "lagrange": "Lagrangian",
@@ -327,7 +327,7 @@ RESULTS = {
     "certify": "Certificate | DampedCertificateDocument | ModeCertificateDocument"
     " | CoupledCertificateDocument | CertificateRange",
     "check": "Certificate | DampedCertificateDocument | ModeCertificateDocument"
-    " | CoupledCertificateDocument | LawCertificateDocument",
+    " | CoupledCertificateDocument | LawCertificateDocument | OrbitCertificateDocument",
 }
 #: The commands of an equation, which are methods of `Oscillator` too.
 OF_EQUATIONS = ("derive", "compare", "simulate", "response", "stability", "certify")
@@ -455,6 +455,7 @@ def commands_text(commands: list[dict[str, Any]]) -> str:
     kinds["ModeCertificateDocument"] = "certificate"
     kinds["CoupledCertificateDocument"] = "certificate"
     kinds["LawCertificateDocument"] = "certificate"
+    kinds["OrbitCertificateDocument"] = "certificate"
     imports = [
         f"    from .documents.{kinds[name].replace('-', '_')} import {name}" for name in classes
     ]

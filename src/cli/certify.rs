@@ -9,13 +9,15 @@ use crate::coupled::CoupledEquations;
 use crate::exact::Rational;
 use crate::export::json::{
     self, CertificateDocument, CoupledCertificateDocument, DampedCertificateDocument,
-    LawCertificateDocument, ModeCertificateDocument,
+    LawCertificateDocument, ModeCertificateDocument, OrbitCertificateDocument,
 };
 use crate::export::printable_in_line;
 use crate::expr::{ExprError, parse_expression};
 use crate::method::with_resonance_at;
 use crate::problem::{Problem, ReadingCommand};
-use crate::report::{self, AnyCertificate, CertificateReport, CertifiedQuestion};
+use crate::report::{
+    self, AnyCertificate, CertificateReport, CertifiedQuestion, OrbitCertificateReport,
+};
 use crate::verify::Verdict;
 use crate::{Method, Options, Oscillator, Solution, Symbol, Values, solve};
 use clap::Args;
@@ -334,6 +336,19 @@ fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
         let error = certificate::check_law(&law).map_err(|error| refused(&error))?;
         return law_printed(&law, &error, &arguments.common);
     }
+    if ode == json::EQUATION_WITH_WALLS {
+        let document: OrbitCertificateDocument =
+            serde_json::from_str(&text).map_err(|error| unread(&error))?;
+        let orbits = document.read().map_err(|error| unread(&error))?;
+        let proved = certificate::check_orbits(&orbits).map_err(|error| refused(&error))?;
+        let report = OrbitCertificateReport {
+            certificate: &orbits,
+            proved: proved.iter().collect(),
+            not_proved: vec![],
+            not_followed: 0,
+        };
+        return orbits_printed(&report, &arguments.common);
+    }
     let tolerance = tolerance(&arguments.common);
     let (motion, damped, mode, coupled);
     let of_damped = [json::EQUATION_OF_CYCLES, json::EQUATION_WITH_DRIVE];
@@ -376,7 +391,7 @@ struct EquationAlone {
 }
 
 /// Refuses a picture, before any work is done for it.
-fn without_picture(common: &Common) -> Result<(), Failure> {
+pub(super) fn without_picture(common: &Common) -> Result<(), Failure> {
     match common.plot {
         None => Ok(()),
         Some(_) => Err(Failure::because(
@@ -403,6 +418,26 @@ fn law_printed(
     };
     let is_within = common.tolerance.is_none_or(|tolerance| error.upper <= tolerance);
     Ok(Outcome { verdict: Some(Verdict::from_passed(is_within)), ..answer.outcome(common)? })
+}
+
+/// The answer to a certificate of impact orbits; it passes if every orbit that a motion follows is proved.
+pub(super) fn orbits_printed(
+    report: &OrbitCertificateReport,
+    common: &Common,
+) -> Result<Outcome, Failure> {
+    let document =
+        report::orbit_certificate(report).map_err(|error| Failure::because(error.to_string()))?;
+    let answer = Answer {
+        document: &document,
+        width: width(common.output.as_deref()),
+        picture: None,
+        other: &|format| match format {
+            Format::Json => json_text(&json::orbit_certificate(report.certificate)),
+            format => no_such(format),
+        },
+    };
+    let is_proved = report.not_proved.is_empty();
+    Ok(Outcome { verdict: Some(Verdict::from_passed(is_proved)), ..answer.outcome(common)? })
 }
 
 fn printed(report: &CertificateReport, common: &Common) -> Result<Outcome, Failure> {

@@ -6,14 +6,15 @@ use crate::Oscillator;
 use crate::export::{json, orbits as drawing};
 use crate::orbits::{
     CHART_SIZE, FoundOrbits, ImpactEquation, OrbitChart, OrbitError, OrbitRequest, OrbitSweep,
-    VaryingParameter, chart_orbits, find_orbits, laws, sweep_orbits,
+    VaryingParameter, certify_orbits, chart_orbits, find_orbits, laws, sweep_orbits,
 };
 use crate::problem::{Problem, ReadingCommand};
-use crate::report::{self, OrbitsReport};
+use crate::report::{self, OrbitCertificateReport, OrbitsReport};
 use crate::values::Values;
 use clap::Args;
 
 use super::answer::{Answer, Draw, no_such};
+use super::certify::{orbits_printed, without_picture};
 use super::derive::{exact_values, formula, oscillator};
 use super::files::width;
 use super::problem::problem;
@@ -45,6 +46,10 @@ pub struct OrbitsArguments {
     /// A second parameter, and from where to where: a chart of where orbits exist and are stable
     #[arg(long, value_name = "NAME=FROM:TO", allow_hyphen_values = true, requires = "vary")]
     along: Option<String>,
+    /// Prove each orbit: that there is exactly one near its numbers, that it touches no wall between
+    /// its impacts, and whether it is stable; FILE.json of --output is a certificate that `check` reads
+    #[arg(long, conflicts_with_all = ["vary", "along"])]
+    certify: bool,
     #[command(flatten)]
     pub common: Common,
 }
@@ -73,6 +78,9 @@ enum Computed {
 
 fn run(arguments: &OrbitsArguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
+    if arguments.certify {
+        without_picture(&arguments.common)?;
+    }
     let oscillator = oscillator(&formula(&problem, ReadingCommand::Orbits)?, None)?;
     let walls = arguments.walls.walls(&problem)?;
     let refuse = |error: OrbitError| refused(&oscillator, error);
@@ -82,6 +90,15 @@ fn run(arguments: &OrbitsArguments) -> Result<Outcome, Failure> {
         Refused::Failure(failure) => failure,
         Refused::Orbit(error) => refuse(error),
     })?;
+    if arguments.certify {
+        return match &computed {
+            Computed::Found(found) => proved(&oscillator, &question, found, &arguments.common),
+            _ => Err(Failure::refused(
+                &"--certify: a proof of orbits needs numbers",
+                Some(format!("add {}", values_of(&question.parameters()))),
+            )),
+        };
+    }
     let mut report =
         OrbitsReport { question: &question, laws: &laws, found: None, sweep: None, chart: None };
     match &computed {
@@ -114,6 +131,36 @@ fn run(arguments: &OrbitsArguments) -> Result<Outcome, Failure> {
         verdict: report.found.and_then(|found| found.verdict),
         ..answer.outcome(&arguments.common)?
     })
+}
+
+/// The proofs of the orbits that were found.
+fn proved(
+    oscillator: &Oscillator,
+    question: &ImpactEquation,
+    found: &FoundOrbits,
+    common: &Common,
+) -> Result<Outcome, Failure> {
+    let interrupt = session::supervision().interrupt;
+    let proofs =
+        certify_orbits(question, found, interrupt).map_err(|error| refused(oscillator, error))?;
+    let not_proved = proofs.proofs.iter().zip(&found.orbits).filter_map(|(proof, own)| {
+        let speed = own.orbit.impacts.first()?.speed;
+        let reason = proof.as_ref()?.as_ref().err()?;
+        Some((own.orbit.periods, speed, reason))
+    });
+    let report = OrbitCertificateReport {
+        certificate: &proofs.certificate,
+        proved: proofs.proofs.iter().flatten().flatten().collect(),
+        not_proved: not_proved.collect(),
+        not_followed: proofs.proofs.iter().filter(|proof| proof.is_none()).count(),
+    };
+    if report.proved.is_empty() {
+        return Err(match report.not_proved.first() {
+            Some((.., reason)) => Failure::refused(&format!("no orbit is proved: {reason}"), None),
+            None => Failure::because("there is no orbit to prove: no motion follows one"),
+        });
+    }
+    orbits_printed(&report, common)
 }
 
 /// A failure with its words, or an error whose term is to be shown in the equation.

@@ -700,7 +700,7 @@ fn stability(exponent: &Enclosure) -> String {
 }
 
 /// The proved stability of a driven motion, in words.
-fn stability_of_driven(multipliers: Option<&Multipliers>) -> String {
+pub(super) fn stability_of_driven(multipliers: Option<&Multipliers>) -> String {
     let Some(multipliers) = multipliers else {
         return "not proved: the variational equation has no series".to_owned();
     };

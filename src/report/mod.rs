@@ -22,6 +22,7 @@ mod mechanism;
 mod modes;
 mod one_harmonic;
 mod optimization;
+mod orbit_certificate;
 mod orbits;
 mod primary;
 mod response;
@@ -51,6 +52,7 @@ pub use mechanism::{mechanism, paper_equations};
 pub use modes::{ModesReport, modes};
 pub use one_harmonic::{OneHarmonicReport, one_harmonic};
 pub use optimization::{optimization, optimization_sentences};
+pub use orbit_certificate::{OrbitCertificateReport, orbit_certificate};
 pub(crate) use orbits::family_in_words;
 #[cfg(feature = "json")]
 pub(crate) use orbits::obstacle_in_words;

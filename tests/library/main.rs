@@ -39,6 +39,7 @@ mod names;
 mod narrow;
 mod near_rest;
 mod normal_modes;
+mod orbit_certificate;
 mod orbits;
 mod primary;
 mod primary_chain;

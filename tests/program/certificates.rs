@@ -4,11 +4,13 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use lindstedt::certificate::{Enclosure, check, check_coupled, check_damped, check_mode};
-use lindstedt::exact::{Rational, ratio};
+use lindstedt::certificate::{
+    Enclosure, check, check_coupled, check_damped, check_mode, check_orbits,
+};
+use lindstedt::exact::{Rational, from_f64, ratio};
 use lindstedt::export::json::{
     self, CertificateDocument, CoupledCertificateDocument, DampedCertificateDocument,
-    ModeCertificateDocument,
+    ModeCertificateDocument, OrbitCertificateDocument,
 };
 use serde_json::{Value, json};
 
@@ -560,6 +562,87 @@ fn both_programs_prove_laws_of_normal_modes() {
     refused(first, &|law| law["mode"] = second["mode"].clone(), "error");
     // Without coupling the motions are a family.
     refused(first, &|law| law["mode"]["f"] = json!(["x + x^3", "y + y^3"]), "no single motion");
+    std::fs::remove_dir_all(&folder).expect("an own folder");
+}
+
+/// Impact orbits are proved by both programs to the same digits, and by neither with another number.
+#[test]
+fn both_programs_prove_impact_orbits() {
+    let folder = folder("orbits");
+    let file = folder.join("orbits.json");
+    let path = file.to_str().expect("a path in text");
+    let python = python();
+    let second = |document: &Value| {
+        std::fs::write(&file, document.to_string()).expect("a file");
+        let program = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/check_certificate.py");
+        let run = |python| Command::new(python).args(["-I", "-S", program]).arg(&file).output();
+        python.as_ref().map(|python| run(python).expect("Python starts"))
+    };
+    for question in [
+        ["examples/orbits/two-stops.toml", "--periods", "1", "--impacts", "1"],
+        ["examples/orbits/doubled.toml", "--periods", "2", "--impacts", "2"],
+        ["examples/orbits/bouncing-ball.toml", "--periods", "1", "--impacts", "1"],
+    ] {
+        let question = [&["orbits"][..], &question, &["--certify"]].concat();
+        let written = run(&[&question[..], &["--output", path]].concat());
+        assert!(written.status.success(), "{written:?}");
+        let text = std::fs::read_to_string(&file).expect("a file");
+        let document: Value = serde_json::from_str(&text).expect("JSON");
+        let read: OrbitCertificateDocument = serde_json::from_str(&text).expect("a certificate");
+        let certificate = read.read().expect("a certificate");
+        assert_eq!(json::orbit_certificate(&certificate), read);
+        // `check` says what is proved as `orbits` did.
+        let [said, checked] = [&question[..], &["check", path]].map(|own| run(own).stdout);
+        let proved = |text: &[u8]| {
+            let text = String::from_utf8_lossy(text);
+            let lines = text.lines().filter(|line| line.contains("+-"));
+            lines.map(str::to_owned).collect::<Vec<_>>()
+        };
+        assert_eq!(proved(&said), proved(&checked));
+        assert!(!proved(&checked).is_empty());
+
+        let enclosed = check_orbits(&certificate).expect("a proof");
+        if let Some(output) = second(&document) {
+            let errors = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{errors}");
+            let found: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+            for (orbit, own) in enclosed.iter().zip(found["orbits"].as_array().expect("orbits")) {
+                for (impact, ends) in
+                    orbit.impacts.iter().zip(own["speeds"].as_array().expect("ends"))
+                {
+                    let end = |place: usize| {
+                        let text = ends[place].as_str().expect("text").replace('.', "");
+                        text.parse::<Rational>().expect("digits") / ratio(10, 1).pow(36)
+                    };
+                    // Each encloses the same number.
+                    let radius = from_f64(impact.speed.radius.value()).expect("a radius");
+                    assert!(end(0) <= &impact.speed.middle + &radius);
+                    assert!(end(1) >= &impact.speed.middle - &radius);
+                    assert!(end(1) - end(0) < ratio(1, 1) / ratio(10, 1).pow(33));
+                }
+            }
+        }
+        let changes: [Tamper; 6] = [
+            |own| own["orbits"][0]["speed_radius"] = json!("1e-60"),
+            |own| own["orbits"][0]["impacts"][0]["phase"] = json!("12345678901234567890"),
+            |own| own["walls"][0]["restitution"] = json!("2/3"),
+            |own| own["load"]["cosine"] = json!("1/1000000000"),
+            |own| own["driving_frequency"] = json!("0"),
+            |own| own["orbits"][0]["isolated_in_phase"] = json!("1000"),
+        ];
+        // One document is enough for what no program may prove.
+        let is_first = question.contains(&"examples/orbits/two-stops.toml");
+        for (index, change) in changes.into_iter().enumerate().filter(|_| is_first) {
+            let mut changed = document.clone();
+            change(&mut changed);
+            std::fs::write(&file, changed.to_string()).expect("a file");
+            assert!(!run(&["check", path]).status.success(), "{index}");
+            if let Some(output) = second(&changed) {
+                let errors = String::from_utf8_lossy(&output.stderr);
+                assert!(errors.starts_with("not proved: "), "{index}: {errors}");
+            }
+        }
+    }
     std::fs::remove_dir_all(&folder).expect("an own folder");
 }
 

@@ -13,10 +13,10 @@ use lindstedt::export::json::{
     DampedCertificateDocument, DocumentKind, FitDocument, FrictionDocument,
     ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
     LawCertificateDocument, MaterialsDocument, ModeCertificateDocument, ModesDocument,
-    MotionDocument, MotionSweepDocument, OneHarmonicDocument, OptimizationDocument, OrbitsDocument,
-    PointDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument, ShortestDocument,
-    SimulationDocument, SlowEquationsDocument, SolutionDocument, StabilityDocument, StudyDocument,
-    SweepDocument,
+    MotionDocument, MotionSweepDocument, OneHarmonicDocument, OptimizationDocument,
+    OrbitCertificateDocument, OrbitsDocument, PointDocument, PrimaryDocument, PrimarySweepDocument,
+    ResponseDocument, ShortestDocument, SimulationDocument, SlowEquationsDocument,
+    SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -128,6 +128,9 @@ fn reads_back(document: &Value) {
         DocumentKind::Certificate if document["ode"] == json::EQUATION_OF_CYCLES => {
             again::<DampedCertificateDocument>(document)
         }
+        DocumentKind::Certificate if document["ode"] == json::EQUATION_WITH_WALLS => {
+            again::<OrbitCertificateDocument>(document)
+        }
         DocumentKind::Certificate if is_law(document) => again::<LawCertificateDocument>(document),
         DocumentKind::Certificate if document["ode"] == json::EQUATIONS_OF_MODES => {
             again::<ModeCertificateDocument>(document)
@@ -204,6 +207,7 @@ fn documents() -> Vec<(String, Value)> {
         add(&["orbits", &file.to_string_lossy()]);
     }
     let ball = "examples/orbits/bouncing-ball.toml";
+    add(&["orbits", ball, "--certify", "--periods", "1"]);
     add(&["orbits", ball, "--vary", "Z=0.001:0.01"]);
     add(&["orbits", ball, "--vary", "Z=0.001:0.01", "--along", "e=0.2:0.9"]);
     let laws = ["shortest", "pendulum", "--range", "A=0:2.8", "--longest", "6"];
@@ -330,6 +334,9 @@ fn innermost(document: &mut Value) -> &mut Value {
             "/stability"
         }
         Some("lindstedt/certificate/1") if is_law(document) => "",
+        Some("lindstedt/certificate/1") if document["ode"] == json::EQUATION_WITH_WALLS => {
+            "/orbits/0/impacts/0"
+        }
         Some("lindstedt/certificate/1") => "/formula",
         Some("lindstedt/motion-sweep/1") => "/motions/0/final_state",
         Some("lindstedt/primary-sweep/1") => "/rows/0",

@@ -44,6 +44,8 @@ fn orbits_as_text() {
         insta::assert_snapshot!("orbits-doubled", printed(&doubled));
         let swept = ["examples/orbits/bouncing-ball.toml", "--vary", "Z=0.001:0.01"];
         insta::assert_snapshot!("orbits-vary", printed(&swept));
+        let proved = ["examples/orbits/driven-beam.toml", "--periods", "1", "--certify"];
+        insta::assert_snapshot!("orbits-certify", printed(&proved));
         insta::assert_snapshot!("help-orbits", printed(&["--help"]));
     });
 }
@@ -70,6 +72,8 @@ fn orbits_have_every_format() {
 #[test]
 fn what_has_no_orbits_says_why() {
     let no_wall: [&str; 0] = [];
+    let irrational = ["--certify", "--at", "c=0.1,k=1,F=1,w=pi/3,d=1,e=0.8"];
+    let passing = ["--certify", "--at", "c=0,k=1,F=1,w=2.8,d=0.05,e=0.8", "--periods", "2"];
     let numbers = ["--at", "c=0.1,k=1,F=1,w=1,d=1"];
     for (equation, wall, others, code, words) in [
         ("x'' + x + 0.5*x^3 = cos(t)", &STOP[..], &no_wall[..], 1, "`0.5*x^3` is not linear"),
@@ -89,6 +93,11 @@ fn what_has_no_orbits_says_why() {
         (BEAM, &STOP, &["--at", "q=1"], 2, "`q` occurs neither"),
         (BEAM, &STOP, &["--format", "csv"], 1, "help: add --at"),
         (BEAM, &STOP, &["--tolerance", "0.1"], 1, "a verdict of orbits needs numbers"),
+        (BEAM, &STOP, &["--certify"], 1, "help: add --at"),
+        (BEAM, &STOP, &["--certify", "--vary", "F=1:2"], 2, "--certify"),
+        (BEAM, &STOP, &["--certify", "--plot", "proof.svg"], 1, "a proof has no picture"),
+        (BEAM, &STOP, &irrational, 1, "the frequency of the drive is pi/3, which is no fraction"),
+        (BEAM, &STOP, &passing, 1, "no motion follows one"),
         (BEAM, &STOP, &["--format", "rust"], 2, "there is no program here"),
     ] {
         let arguments = [&[equation], wall, others].concat();

@@ -21,7 +21,7 @@ pub use lindstedt_oscillator::{conservative, equilibrium, method, oscillator, so
 #[doc(no_inline)]
 pub use lindstedt_series::series;
 #[doc(no_inline)]
-pub use lindstedt_verify::{trajectory, verify};
+pub use lindstedt_verify::{certificate, trajectory, verify};
 
 pub mod impact;
 

@@ -3,7 +3,8 @@
 //!
 //! In: a linear driven oscillator and its walls, an [`ImpactEquation`]. Out: in letters the impact
 //! speed, its phase and the multipliers of orbits with one impact, with the curves at which they
-//! begin, [`laws`]; in numbers all orbits, each beside a simulation, [`find_orbits`].
+//! begin, [`laws`]; in numbers all orbits, each beside a simulation, [`find_orbits`], and a proof of each,
+//! [`certify_orbits`].
 //!
 //! ```text
 //! x'' + c x' + k x = P + A cos(omega t) + B sin(omega t)   off the walls
@@ -25,6 +26,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod certify;
 mod chart;
 mod contour;
 mod equation;
@@ -39,6 +41,7 @@ mod orbit;
 mod search;
 mod sweep;
 
+pub use certify::{OrbitProofs, certify_orbits};
 pub use chart::{CHART_SIZE, ChartPoint, OrbitChart, OrbitCurve, chart_orbits};
 pub use equation::{
     BiasedHarmonic, CompiledImpact, ImpactEquation, ImpactNumbers, OrbitWall, WallNumbers,

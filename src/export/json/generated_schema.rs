@@ -13,10 +13,10 @@ use super::{
     DampedCertificateDocument, DocumentKind, FitDocument, FrictionDocument,
     ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
     LawCertificateDocument, MaterialsDocument, ModeCertificateDocument, ModesDocument,
-    MotionDocument, MotionSweepDocument, OneHarmonicDocument, OptimizationDocument, OrbitsDocument,
-    PointDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument, ShortestDocument,
-    SimulationDocument, SlowEquationsDocument, SolutionDocument, StabilityDocument, StudyDocument,
-    SweepDocument,
+    MotionDocument, MotionSweepDocument, OneHarmonicDocument, OptimizationDocument,
+    OrbitCertificateDocument, OrbitsDocument, PointDocument, PrimaryDocument, PrimarySweepDocument,
+    ResponseDocument, ShortestDocument, SimulationDocument, SlowEquationsDocument,
+    SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
 };
 use crate::solution::Method;
 
@@ -85,9 +85,10 @@ impl JsonSchema for EitherCertificate {
             generator.subschema_for::<ModeCertificateDocument>(),
             generator.subschema_for::<CoupledCertificateDocument>(),
             generator.subschema_for::<LawCertificateDocument>(),
+            generator.subschema_for::<OrbitCertificateDocument>(),
         ];
         json_schema!({
-            "description": "Numbers from which a motion can be proved, and how far a formula for it is off: a conservative motion, a limit cycle, a driven motion, or a free or a driven motion of several coordinates; or how far a frequency law is off on a range.",
+            "description": "Numbers from which a motion can be proved, and how far a formula for it is off: a conservative motion, a limit cycle, a driven motion, a free or a driven motion of several coordinates, or impact orbits; or how far a frequency law is off on a range.",
             "anyOf": kinds,
         })
     }

@@ -37,6 +37,7 @@ pub mod motion;
 pub mod number;
 mod one_harmonic;
 pub mod optimization;
+pub mod orbit_certificate;
 mod orbits;
 pub mod points;
 pub mod primary;
@@ -93,6 +94,7 @@ pub use one_harmonic::{
     OneHarmonicMotionDocument, one_harmonic,
 };
 pub use optimization::{OptimizationDocument, optimization};
+pub use orbit_certificate::{EQUATION_WITH_WALLS, OrbitCertificateDocument, orbit_certificate};
 pub use orbits::{
     MultiplierDocument, OrbitBranchDocument, OrbitChangeDocument, OrbitChartDocument,
     OrbitCurveDocument, OrbitDocument, OrbitFamilyDocument, OrbitLawsDocument,

@@ -133,6 +133,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("impact", vec![], vec!["--standalone"]),
         ("impact", vec![], vec!["--timeout", NO_TIME]),
         ("impact", vec![], vec!["--certify"]),
+        ("orbits", vec!["examples/orbits/driven-beam.toml", "--periods", "1"], vec!["--certify"]),
         ("impact", vec![], vec!["--quiet"]),
         ("simulate", simulated[1..].to_vec(), vec!["--sample", "1"]),
         ("simulate", simulated[1..].to_vec(), vec!["--integrator", "both"]),

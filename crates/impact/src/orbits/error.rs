@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::certificate::OrbitNotProved;
 use crate::expr::{EvaluationError, Expr, ExprError};
 use crate::symbol::Symbol;
 use crate::trajectory::TrajectoryError;
@@ -100,6 +101,9 @@ pub enum OrbitError {
     /// The parameter that varies also has a value.
     #[error("`{0}` varies and has a value")]
     Given(Symbol),
+    /// A certificate cannot be made.
+    #[error(transparent)]
+    NotCertified(#[from] OrbitNotProved),
     /// The work was interrupted.
     #[error("interrupted before the end")]
     Interrupted,
@@ -139,6 +143,9 @@ impl OrbitError {
             Self::Resonance(_) => "add damping, or move the frequency of the drive a little".to_owned(),
             Self::Wall(WallError::NoCoordinate { .. }) => "name the coordinate, --wall \"x < d\"".to_owned(),
             Self::Wall(WallError::Restitution(_)) => "0 sticks, 1 loses nothing".to_owned(),
+            Self::NotCertified(OrbitNotProved::NoFraction { .. }) => {
+                "write it as a fraction or a decimal, 22/7 or 0.65".to_owned()
+            }
             Self::Given(name) => format!("leave out the value of {name}, or vary another parameter"),
             _ => return None,
         })

@@ -13,6 +13,8 @@ use lindstedt::orbits::{
 use lindstedt::wall::Wall;
 use num_traits::{Signed as _, Zero as _};
 
+use crate::random::Random;
+
 const BEAM: &str = "x'' + c*x' + k*x = F*cos(w*t)";
 
 fn ratio(above: i64, below: i64) -> Rational {
@@ -129,6 +131,38 @@ fn walls_that_move_and_walls_on_both_sides_are_proved() {
     }
     let at = "g = 9.81, Z = 0.0045, w = 60, e = 0.5";
     agree_with_closed_form(&proofs(&ball, at, 2, 2));
+}
+
+/// Whatever the damping, the stiffness, the load and the side of the wall are, every orbit of the closed form that
+/// a motion follows is proved.
+#[test]
+fn orbits_of_random_oscillators_are_proved() {
+    const COUNT: usize = 30;
+    let mut random = Random::new(27);
+    let mut count = 0;
+    for number in 0..COUNT {
+        let bound = random.choose(&["x < d", "x > d"]);
+        let own = question("x'' + c*x' + k*x = F*cos(w*t) + P", &[bound]);
+        let ranges = [
+            ("c", 0, 30),
+            ("k", -3, 30),
+            ("F", 3, 30),
+            ("w", 6, 35),
+            ("P", -5, 5),
+            ("d", -6, 12),
+            ("e", 3, 9),
+        ];
+        let tenths =
+            ranges.map(|(name, low, high)| format!("{name} = {}/10", random.whole(low, high)));
+        let at = tenths.join(", ");
+        let both = proofs(&own, &at, 1, 1 + number as u32 % 2);
+        let followed = both.1.proofs.iter().flatten().count();
+        if followed > 0 {
+            agree_with_closed_form(&both);
+        }
+        count += followed;
+    }
+    assert!(count > 10, "{count} orbits");
 }
 
 fn still(value: Rational) -> ExactHarmonic {

@@ -18,6 +18,7 @@ use nalgebra::DMatrix;
 use super::OrbitNotProved;
 use super::equations::{GapEquations, ImpactBalls, Linearised};
 use crate::certificate::fourier_series::WORKING;
+use crate::exact::Rational;
 use crate::exact::ball::Ball;
 use crate::exact::bound::Bound;
 use crate::exact::rational::from_f64;
@@ -30,6 +31,11 @@ pub(super) struct Radii {
 }
 
 impl Radii {
+    /// Bounds of the claims for phases and speeds.
+    pub(super) fn of([phase, speed]: &[Rational; 2]) -> Self {
+        Self { phase: Bound::of_fraction(phase), speed: Bound::of_fraction(speed) }
+    }
+
     /// The radii in the order of the unknowns: phase and speed in turn.
     fn of_unknown(self, index: usize) -> Bound {
         if index.is_multiple_of(2) { self.phase } else { self.speed }

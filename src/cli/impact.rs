@@ -1,11 +1,13 @@
 //! `lindstedt impact [FILE]`.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::certificate::enclose_impact;
+use crate::Symbol;
+use crate::certificate::{PowerLaw, enclose_impact};
 use crate::exact::Rational;
 use crate::export::json;
-use crate::expr::parse_expression;
+use crate::expr::{Expr, parse_expression};
 use crate::impact::{Impact, Setup, Side, compare, solve};
 use crate::problem::{BarrierSide, Problem};
 use crate::report::{self, ImpactCertificateReport};
@@ -53,8 +55,8 @@ pub struct ImpactArguments {
     /// Every method in one table, each at its lowest order that passes
     #[arg(long)]
     compare: bool,
-    /// Prove the numbers of the paper's impact, pendulum and barrier of Hertz, and how far each
-    /// closed form is off
+    /// Prove the numbers of the impact of a pendulum and a barrier whose force is a power of the
+    /// depth, and how far each closed form is off
     #[arg(long, conflicts_with = "compare")]
     certify: bool,
     #[command(flatten)]
@@ -107,13 +109,12 @@ fn run(arguments: &ImpactArguments) -> Result<Outcome, Failure> {
 fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
     let foreign = [
         ("an equation of its own", setup.swing.is_some()),
-        ("a force of its own", setup.force.is_some()),
         ("a contact that loses energy", setup.loss.is_some()),
         ("a table of contact laws", setup.every_contact_law),
     ];
     if let Some((what, _)) = foreign.iter().find(|(_, given)| *given) {
         return Err(Failure::Usage(format!(
-            "--certify proves the impact of equation (9), a pendulum against a barrier of Hertz that loses nothing, not {what}: leave out \
+            "--certify proves the impact of equation (9), a pendulum against a barrier that loses nothing, not {what}: leave out \
              --certify, whose place Runge-Kutta takes"
         )));
     }
@@ -132,12 +133,14 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
     let [Some(amplitude), Some(barrier), Some(stiffness)] = &exact else {
         return Err(Failure::because("a number of the impact is not finite".to_owned()));
     };
-    let enclosure = enclose_impact(amplitude, barrier, stiffness)?;
+    let force = power_law(&setup, stiffness)?;
+    let enclosure = enclose_impact(amplitude, barrier, &force)?;
     let impact = solve(setup)?;
     let report = ImpactCertificateReport {
         impact: &impact,
         enclosure: &enclosure,
-        exact: [amplitude, barrier, stiffness],
+        exact: [amplitude, barrier],
+        force: &force,
         tolerance,
     };
     let answer = Answer {
@@ -151,6 +154,26 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
     };
     let passes = report.verdicts().iter().any(|(_, verdict)| *verdict == Verdict::Pass);
     Ok(Outcome { verdict: Some(Verdict::from_passed(passes)), ..answer.outcome(common)? })
+}
+
+/// The force of the barrier, which has to be a power of the depth.
+fn power_law(setup: &Setup, stiffness: &Rational) -> Result<PowerLaw, Failure> {
+    let Some(force) = &setup.force else { return Ok(PowerLaw::hertz(stiffness.clone())) };
+    let mut values: BTreeMap<Symbol, Expr> =
+        setup.values.iter().map(|(name, value)| (name, value.clone())).collect();
+    values.insert("gamma".into(), Expr::number(stiffness.clone()));
+    let law = force.substitute_all(&values).and_then(|force| PowerLaw::of(&force, "d".into()));
+    let refused = |reason: &str| {
+        Failure::refused(
+            &format!("--certify: the force `{force}` of the barrier {reason}"),
+            Some("write it as a number times a power of the depth, gamma*d^2, or leave out --certify, whose place Runge-Kutta takes".to_owned()),
+        )
+    };
+    match law {
+        Ok(Some(law)) => Ok(law),
+        Ok(None) => Err(refused("is no power of the depth d with numbers that are fractions")),
+        Err(error) => Err(refused(&format!("is not evaluated: {error}"))),
+    }
 }
 
 /// A double as the fraction that its decimals say.

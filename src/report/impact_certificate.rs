@@ -2,7 +2,7 @@
 
 use super::certificate::{enclosed, percent, rounded_percent};
 use super::{Block, Document};
-use crate::certificate::{ImpactEnclosure, SizeBounds};
+use crate::certificate::{ImpactEnclosure, PowerLaw, SizeBounds};
 use crate::decimal::{exact_decimal, not_above_typed};
 use crate::exact::Rational;
 use crate::impact::{Impact, PhaseReading};
@@ -15,8 +15,10 @@ pub struct ImpactCertificateReport<'a> {
     pub impact: &'a Impact,
     /// The enclosures.
     pub enclosure: &'a ImpactEnclosure,
-    /// A, xc and gamma as exact numbers.
-    pub exact: [&'a Rational; 3],
+    /// A and xc as exact numbers.
+    pub exact: [&'a Rational; 2],
+    /// The force of the barrier.
+    pub force: &'a PowerLaw,
     /// The largest relative error of a passing closed form.
     pub tolerance: f64,
 }
@@ -53,12 +55,16 @@ impl ImpactCertificateReport<'_> {
 pub fn impact_certificate<'a>(report: &ImpactCertificateReport<'a>) -> Document<'a> {
     // Exact values, as decimals if these are finite.
     let exactly = |value: &Rational| exact_decimal(value).unwrap_or_else(|| value.to_string());
-    let [amplitude, barrier, stiffness] = report.exact.map(exactly);
-    let given = vec![
+    let [amplitude, barrier] = report.exact.map(exactly);
+    let mut given = vec![
         ("A, released from rest at x = -A", amplitude),
         ("xc, the place of the barrier", barrier),
-        ("gamma, its stiffness", stiffness),
+        ("gamma, its stiffness", exactly(&report.force.stiffness)),
     ];
+    if *report.force != PowerLaw::hertz(report.force.stiffness.clone()) {
+        given[2].0 = "stiffness of the barrier";
+        given.push(("exponent of the depth", exactly(&report.force.exponent)));
+    }
     let proved = report.enclosure.in_order();
     let proved = proved.map(|(name, enclosure)| (name, enclosed(enclosure)));
     let within = percent(report.tolerance);

@@ -1,7 +1,7 @@
 //! Impacts in proved numbers, held against elliptic integrals of another crate, quadrature in other
 //! variables, Runge-Kutta, and exact relations.
 
-use lindstedt::certificate::{Enclosure, ImpactEnclosure, NotEnclosed, enclose_impact};
+use lindstedt::certificate::{Enclosure, ImpactEnclosure, NotEnclosed, PowerLaw, enclose_impact};
 use lindstedt::exact::{Rational, from_f64, to_f64};
 use lindstedt::impact::{Setup, solve};
 use num_traits::Signed as _;
@@ -16,7 +16,7 @@ fn exact(value: f64) -> Rational {
 }
 
 fn enclosed(amplitude: f64, barrier: f64, stiffness: f64) -> Result<ImpactEnclosure, NotEnclosed> {
-    enclose_impact(&exact(amplitude), &exact(barrier), &exact(stiffness))
+    enclose_impact(&exact(amplitude), &exact(barrier), &PowerLaw::hertz(exact(stiffness)))
 }
 
 /// Whether a double is what is enclosed, but for its own relative error.
@@ -87,6 +87,47 @@ fn thirty_digits_and_their_sum() {
     }
 }
 
+/// Barriers of other powers of the depth: the energy at the deepest point, and the duration by quadrature, of a linear
+/// spring without a swing to speak of half a period of its own.
+#[test]
+fn every_power_of_the_depth_is_proved() {
+    for (above, below) in [(1, 2), (1, 1), (2, 1), (5, 2), (4, 1)] {
+        let law = PowerLaw { stiffness: fraction(1_000_000, 1), exponent: fraction(above, below) };
+        let impact = enclose_impact(&fraction(3, 2), &fraction(323, 1000), &law).expect("a proof");
+        let [speed, deepest, duration] =
+            [&impact.speed, &impact.penetration, &impact.duration].map(|own| to_f64(&own.middle));
+        let exponent = above as f64 / below as f64;
+        let elastic = |depth: f64| 2e6 * depth.powf(exponent + 1.0) / (exponent + 1.0);
+        let swing = |depth: f64| 2.0 * (0.323_f64.cos() - (0.323 + depth).cos());
+        let left = speed * speed - swing(deepest) - elastic(deepest);
+        assert!(left.abs() < 1e-11, "{exponent}: {left}");
+        // With d = dm (1 - s^2) the integrand is smooth at the deepest point, where it is cut off.
+        let points = 20_000_u32;
+        let step = 1.0 / f64::from(points);
+        let integrand = |s: f64| {
+            let depth = deepest * (1.0 - s * s);
+            let square = swing(deepest) - swing(depth) + elastic(deepest) - elastic(depth);
+            4.0 * deepest * s / square.sqrt()
+        };
+        let middles = (0..points).map(|point| step * (f64::from(point) + 0.5));
+        let by_quadrature = step * middles.map(integrand).sum::<f64>();
+        assert!(
+            (by_quadrature / duration - 1.0).abs() < 1e-4,
+            "{exponent}: {by_quadrature} {duration}"
+        );
+        for (name, number) in impact.in_order() {
+            assert!(number.radius.value() < 1e-30 * to_f64(&number.middle), "{exponent}: {name}");
+        }
+    }
+    let spring = PowerLaw { stiffness: fraction(100_000_000, 1), exponent: fraction(1, 1) };
+    let impact = enclose_impact(&fraction(1, 1), &fraction(0, 1), &spring).expect("a proof");
+    let half_period = std::f64::consts::PI / (1e8_f64 + 1.0).sqrt();
+    assert!(agrees(&impact.duration, half_period, 1e-14), "{impact:?}");
+    let third = PowerLaw { stiffness: fraction(1000, 1), exponent: fraction(1, 3) };
+    let refused = enclose_impact(&fraction(3, 2), &fraction(323, 1000), &third);
+    assert_eq!(refused.expect_err("no half of a whole number"), NotEnclosed::Exponent);
+}
+
 /// The harder the barrier, the less the swing acts during the contact: its duration times
 /// `gamma^(2/5) v^(1/5)` tends to the constant of Hertz,
 /// `2 (5/4)^(2/5) int_0^1 dz/sqrt(1 - z^(5/2))`.
@@ -112,8 +153,12 @@ fn a_hard_barrier_takes_the_time_of_hertz() {
 #[test]
 fn runge_kutta_is_as_good_as_it_says() {
     let setup = Setup { stiffness: 1e6, ..Setup::default() };
-    let proved = enclose_impact(&fraction(3, 2), &fraction(323, 1000), &fraction(1_000_000, 1))
-        .expect("a proof");
+    let proved = enclose_impact(
+        &fraction(3, 2),
+        &fraction(323, 1000),
+        &PowerLaw::hertz(fraction(1_000_000, 1)),
+    )
+    .expect("a proof");
     let impact = solve(setup).expect("an impact");
     for (quantity, (name, truth)) in impact.quantities().into_iter().zip(proved.in_order()) {
         assert_eq!(quantity.name, name);
@@ -129,7 +174,8 @@ fn runge_kutta_is_as_good_as_it_says() {
 #[test]
 fn relative_errors_are_rounded_outwards() {
     let proved =
-        enclose_impact(&fraction(3, 2), &fraction(0, 1), &fraction(1000, 1)).expect("a proof");
+        enclose_impact(&fraction(3, 2), &fraction(0, 1), &PowerLaw::hertz(fraction(1000, 1)))
+            .expect("a proof");
     for parts in [-1e-3, -1e-9, 1e-12, 0.25] {
         let value = to_f64(&proved.speed.middle) * (1.0 + parts);
         let range = proved.speed.relative_error(value);

@@ -1318,6 +1318,9 @@ fn an_impact_is_proved_from_either_side() {
         (&["--certify", "examples/impact-duffing.toml"], 2, "an equation of its own"),
         (&["--certify", "examples/impact-restitution.toml"], 2, "loses energy"),
         (&["--certify", "--at", "A=0.2"], 1, "within reach"),
+        (&["--certify", "--force", "gamma*d + d^2"], 1, "is no power of the depth"),
+        (&["--certify", "--force", "gamma*d^(1/3)"], 1, "half of a whole number"),
+        (&["--certify", "--force", "gamma*d^2", "--at", "gamma=1e6"], 0, ""),
         (&["--certify", "--order", "2", "--tolerance", "1e-4"], 3, ""),
         (&["--certify", "--tolerance", "0.001"], 0, ""),
     ] {

@@ -14,7 +14,7 @@ use crate::impact::PhaseReading;
 use crate::report::{ImpactCertificateReport, known_digits};
 use crate::verify::Verdict;
 
-/// The numbers of an impact between a pendulum and a barrier of Hertz that loses nothing, each
+/// The numbers of an impact between a pendulum and a barrier of a power law that loses nothing, each
 /// enclosed by a proof. Times in units of 1/omega, angles in radians.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
@@ -27,8 +27,10 @@ pub struct ImpactCertificateDocument {
     pub amplitude: Constant,
     /// The place of the barrier.
     pub barrier: Constant,
-    /// The stiffness of the barrier.
+    /// The stiffness of the barrier, whose force is `stiffness * depth^exponent`.
     pub stiffness: Constant,
+    /// The exponent of the depth, 3/2 of Hertz's law.
+    pub exponent: Constant,
     /// The enclosed numbers.
     pub proved: OfPhases<EnclosedNumber>,
     /// The size of the relative error up to which a verdict is `pass`.
@@ -102,7 +104,7 @@ pub fn impact_certificate(report: &ImpactCertificateReport) -> ImpactCertificate
         exact: value.to_string(),
         value: finite(Some(to_f64(value))),
     };
-    let [amplitude, barrier, stiffness] = report.exact.map(constant);
+    let [amplitude, barrier] = report.exact.map(constant);
     let enclosed = |enclosure: &Enclosure| {
         let (middle, radius) = known_digits(enclosure);
         EnclosedNumber { middle, radius }
@@ -134,7 +136,8 @@ pub fn impact_certificate(report: &ImpactCertificateReport) -> ImpactCertificate
         equation: report.impact.equation.clone(),
         amplitude,
         barrier,
-        stiffness,
+        stiffness: constant(&report.force.stiffness),
+        exponent: constant(&report.force.exponent),
         proved: OfPhases::from(report.enclosure.in_order().map(|(_, number)| enclosed(number))),
         tolerance: report.tolerance,
         runge_kutta: OfPhases::from(column(0)),

@@ -4,13 +4,13 @@
 //! q^2 every function is analytic:
 //!
 //! ```text
-//! (d')^2 = G(q) = v^2 - 2 (cos xc - cos(xc + q^2)) - (4/5) gamma q^5,     G(qm) = 0
+//! (d')^2 = G(q) = v^2 - 2 (cos xc - cos(xc + q^2)) - (4/p) gamma q^p,     G(qm) = 0,     p = 2 n + 2
 //! G(q) = (qm - q) H(q),     y = (qm^2 - q^2)/2,   m = xc + (qm^2 + q^2)/2
-//! H(q) = 2 (qm + q) sin(m) sin(y)/y + (4/5) gamma (qm^4 + qm^3 q + qm^2 q^2 + qm q^3 + q^4)
+//! H(q) = 2 (qm + q) sin(m) sin(y)/y + (4/p) gamma (qm^(p-1) + qm^(p-2) q + ... + q^(p-1))
 //! T = 8 sqrt(qm) int_0^1 q/sqrt(H(q)) dw,     q = qm (1 - w^2)
 //! ```
 //!
-//! Until xc + q^2 = pi/2 the slope of G changes its sign at most once, from plus to minus: then qm
+//! The force of the barrier is `gamma d^n`; that of Hertz has n = 3/2, p = 5. Until xc + q^2 = pi/2 the slope of G changes its sign at most once, from plus to minus: then qm
 //! is the only root, and two signs enclose it. The integral is taken piece by piece by the Taylor
 //! series of the integrand about the middle; the remainder is at most the next coefficient enclosed
 //! over the whole piece (Corliss and Rall).
@@ -36,12 +36,14 @@ const ORDER: usize = 64;
 /// piece with a larger one is halved.
 const NEGLIGIBLE: i32 = -140;
 
-/// The contact of the pendulum with a barrier of Hertz's law.
-pub(super) struct HertzContact {
+/// The contact of the pendulum with a barrier whose force is a power of the depth.
+pub(super) struct PowerLawContact {
     /// Place of the barrier.
     pub(super) barrier: Ball,
     /// gamma.
     pub(super) stiffness: Ball,
+    /// p, two more than twice the exponent of the depth.
+    pub(super) power: u32,
     /// The square of the speed at the touch.
     pub(super) speed_squared: Ball,
     /// Sine and cosine of the place.
@@ -63,10 +65,10 @@ pub(super) fn sine_and_cosine(angle: &Ball) -> Option<[Ball; 2]> {
     Some([product(angle, &first(1)?), first(0)?])
 }
 
-impl HertzContact {
-    /// `(4/5) gamma`.
+impl PowerLawContact {
+    /// `(4/p) gamma`.
     fn elasticity(&self) -> Ball {
-        WORKING.divided(&WORKING.scaled(&self.stiffness, 4), 5)
+        WORKING.divided(&WORKING.scaled(&self.stiffness, 4), self.power)
     }
 
     /// `G`, the square of the velocity at the depth `q^2`.
@@ -74,21 +76,23 @@ impl HertzContact {
         let depth = product(q, q);
         let [_, cosine] = sine_and_cosine(&sum(&self.barrier, &depth))?;
         let swing = WORKING.scaled(&WORKING.difference(&self.waves[1], &cosine), 2);
-        let elastic = product(&self.elasticity(), &product(&product(&depth, &depth), q));
+        let elastic = product(&self.elasticity(), &power_of(q, self.power));
         Some(WORKING.difference(&WORKING.difference(&self.speed_squared, &swing), &elastic))
     }
 
     /// The root `qm` by Newton's method, without a proof.
     fn candidate(&self) -> Option<Ball> {
         const STEPS: usize = 200;
-        let power = 1.25 * WORKING.nearest(&self.speed_squared) / WORKING.nearest(&self.stiffness);
-        let start = crate::exact::rational::from_f64(power.powf(0.2))?;
+        let degree = f64::from(self.power);
+        let power =
+            0.25 * degree * WORKING.nearest(&self.speed_squared) / WORKING.nearest(&self.stiffness);
+        let start = crate::exact::rational::from_f64(power.powf(1.0 / degree))?;
         let mut q = without_radius(WORKING.fraction(&start));
         for _ in 0..STEPS {
             let depth = product(&q, &q);
             let [sine, _] = sine_and_cosine(&sum(&self.barrier, &depth))?;
-            let cubed = product(&product(&self.stiffness, &depth), &q);
-            let slope = WORKING.scaled(&product(&q, &sum(&sine, &cubed)), -4);
+            let force = product(&self.stiffness, &power_of(&q, self.power - 2));
+            let slope = WORKING.scaled(&product(&q, &sum(&sine, &force)), -4);
             let step = WORKING.quotient(&self.velocity_squared(&q)?, &without_radius(slope))?;
             q = without_radius(WORKING.difference(&q, &step));
             if WORKING.magnitude(&without_radius(step)) <= Bound::power_of_two(-180) {
@@ -197,10 +201,10 @@ impl HertzContact {
         let sine = added(scaled(&cosine_mean, &self.waves[0]), &of_sine);
         let both = scaled(&shifted(q.clone(), qm), &WORKING.integer(2));
         let swing = multiplied(&multiplied(&sine, &both), &sinc_y);
-        // By Horner's rule: q^4 + qm q^3 + ... = (((q + qm) q + qm^2) q + qm^3) q + qm^4.
+        // By Horner's rule, for p = 5: q^4 + qm q^3 + ... = (((q + qm) q + qm^2) q + qm^3) q + qm^4.
         let mut powers = vec![one];
         let mut power = qm.clone();
-        for _ in 0..4 {
+        for _ in 1..self.power {
             powers = shifted(multiplied(&powers, &q), &power);
             power = product(&power, qm);
         }
@@ -208,6 +212,11 @@ impl HertzContact {
         let slope = added(swing, &elastic);
         Some(multiplied(&inverse_root(&slope)?, &q))
     }
+}
+
+/// A whole power of a number.
+fn power_of(number: &Ball, exponent: u32) -> Ball {
+    (0..exponent).fold(WORKING.integer(1), |power, _| product(&power, number))
 }
 
 /// The middle without the radius, for a mere guess.

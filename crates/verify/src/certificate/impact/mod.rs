@@ -1,8 +1,8 @@
-//! The paper's impact, enclosed: a pendulum from rest against an elastic barrier, equation (9), its
-//! three phases with proved bounds.
+//! The paper's impact, enclosed: a pendulum from rest against an elastic barrier, equation (9) with
+//! any power n of the depth, its three phases with proved bounds.
 //!
 //! ```text
-//! x'' + sin x + gamma (x - xc)^(3/2) H(x - xc) = 0,     x(0) = -A,  x'(0) = 0
+//! x'' + sin x + gamma (x - xc)^n H(x - xc) = 0,     x(0) = -A,  x'(0) = 0,     n = 3/2 in (9)
 //! v^2 = 2 (cos xc - cos A)
 //! t1 = K(k) + F(phi, k),     k = sin(A/2),   sin phi = sin(xc/2)/k
 //! T = 2 t1 + (duration of the contact)
@@ -19,13 +19,15 @@
 mod contact;
 mod elliptic;
 
-use num_traits::Signed as _;
+use num_traits::{Signed as _, ToPrimitive as _, Zero as _};
 
-use self::contact::{HertzContact, is_positive, position_and_waves, sine_and_cosine};
+use self::contact::{PowerLawContact, is_positive, position_and_waves, sine_and_cosine};
 use super::Enclosure;
 use super::fourier_series::WORKING;
 use crate::exact::Rational;
 use crate::exact::ball::Ball;
+use crate::expr::{Expr, ExprError};
+use crate::symbol::Symbol;
 
 /// The proved enclosures of an impact; times in units of 1/omega, angles in rad.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,6 +58,62 @@ impl ImpactEnclosure {
     }
 }
 
+/// The force `stiffness * d^exponent` of an elastic barrier, d the depth in it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PowerLaw {
+    /// The factor, positive.
+    pub stiffness: Rational,
+    /// The exponent, half of a positive whole number.
+    pub exponent: Rational,
+}
+
+impl PowerLaw {
+    /// The law of Hertz, with the exponent 3/2.
+    pub fn hertz(stiffness: Rational) -> Self {
+        Self { stiffness, exponent: Rational::new(3.into(), 2.into()) }
+    }
+
+    /// The power law that an expression in the depth and numbers is; `None` if it is another one.
+    ///
+    /// # Errors
+    /// An expression that cannot be differentiated or written.
+    ///
+    /// ```
+    /// # use lindstedt_verify as lindstedt;
+    /// use lindstedt::certificate::PowerLaw;
+    ///
+    /// let law = PowerLaw::of(&"3*d^2/2".parse()?, "d".into())?.ok_or("another law")?;
+    /// assert_eq!((law.stiffness.to_string(), law.exponent.to_string()), ("3/2".into(), "2".into()));
+    /// assert_eq!(PowerLaw::of(&"d + d^2".parse()?, "d".into())?, None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn of(force: &Expr, depth: Symbol) -> Result<Option<Self>, ExprError> {
+        let at_one = |expression: &Expr| expression.substitute(depth, &Expr::one())?.expand();
+        let (stiffness, slope) = (at_one(force)?, at_one(&force.differentiate(depth)?)?);
+        let (Some(stiffness), Some(slope)) = (stiffness.as_number(), slope.as_number()) else {
+            return Ok(None);
+        };
+        if stiffness.is_zero() {
+            return Ok(None);
+        }
+        let law = Self { stiffness: stiffness.clone(), exponent: slope / stiffness };
+        // An exponent that is not written is that of no power, but a quotient of two sums.
+        let exponent = Expr::number(law.exponent.clone());
+        let Ok(power) = Expr::power(&Expr::from(depth), &exponent) else { return Ok(None) };
+        let rest = (force - &(&Expr::number(law.stiffness.clone()) * &power)).expand()?;
+        Ok(rest.is_zero().then_some(law))
+    }
+
+    /// p, two more than twice the exponent; `None` if the exponent is none that is proved.
+    fn power(&self) -> Option<u32> {
+        /// The largest p.
+        const MOST: u32 = 42;
+        let power = &self.exponent * Rational::from_integer(2.into());
+        let power = power.is_integer().then(|| power.to_integer().to_u32()).flatten()? + 2;
+        (3..=MOST).contains(&power).then_some(power)
+    }
+}
+
 /// The reason why an impact is not enclosed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -69,6 +127,9 @@ pub enum NotEnclosed {
     /// There is no barrier.
     #[error("the stiffness gamma must be positive")]
     Stiffness,
+    /// The force of the barrier is another power of the depth.
+    #[error("the exponent of the depth must be half of a whole number, from 1/2 to 20")]
+    Exponent,
     /// The contact goes deeper than the range in which its deepest point is known to be unique.
     #[error(
         "the contact goes on beyond the horizontal, x = pi/2: its deepest point is not proved to be the only one"
@@ -80,15 +141,16 @@ pub enum NotEnclosed {
 }
 
 /// Encloses the impact of a pendulum that is released from rest at `-amplitude` towards a barrier
-/// at `barrier`, on its right.
+/// at `barrier`, on its right, with this force.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
-/// use lindstedt::certificate::enclose_impact;
+/// use lindstedt::certificate::{PowerLaw, enclose_impact};
 /// use lindstedt::exact::Rational;
 ///
 /// let fraction = |above: i64, below: i64| Rational::new(above.into(), below.into());
-/// let impact = enclose_impact(&fraction(3, 2), &fraction(323, 1000), &fraction(1_000_000, 1))?;
+/// let barrier = PowerLaw::hertz(fraction(1_000_000, 1));
+/// let impact = enclose_impact(&fraction(3, 2), &fraction(323, 1000), &barrier)?;
 /// assert!(impact.speed.radius.value() < 1e-30);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -98,11 +160,12 @@ pub enum NotEnclosed {
 pub fn enclose_impact(
     amplitude: &Rational,
     barrier: &Rational,
-    stiffness: &Rational,
+    force: &PowerLaw,
 ) -> Result<ImpactEnclosure, NotEnclosed> {
-    if !stiffness.is_positive() {
+    if !force.stiffness.is_positive() {
         return Err(NotEnclosed::Stiffness);
     }
+    let power = force.power().ok_or(NotEnclosed::Exponent)?;
     let (pi, release) = (WORKING.pi(), WORKING.fraction(amplitude));
     if !amplitude.is_positive() || !is_positive(&WORKING.difference(&pi, &release)) {
         return Err(NotEnclosed::Release);
@@ -120,9 +183,10 @@ pub fn enclose_impact(
     let speed_squared = WORKING.scaled(&WORKING.difference(&waves[1], &cosine), 2);
     let speed = WORKING.root(&speed_squared, 2).ok_or(NotEnclosed::Digits)?;
     let time_to_contact = flight(amplitude, barrier).ok_or(NotEnclosed::Digits)?;
-    let contact = HertzContact {
+    let contact = PowerLawContact {
         barrier: place,
-        stiffness: WORKING.fraction(stiffness),
+        stiffness: WORKING.fraction(&force.stiffness),
+        power,
         speed_squared,
         waves,
     };

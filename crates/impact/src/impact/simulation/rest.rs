@@ -134,7 +134,8 @@ impl Simulation {
 
     /// The envelope from this first swing; only the points that are known to belong to it.
     fn envelope_from(&self, amplitude: f64) -> Vec<TurningPoint> {
-        let mut envelope = vec![TurningPoint { t: 0.0, x: amplitude }];
+        let mut envelope = Vec::with_capacity(self.turns.len() + 2);
+        envelope.push(TurningPoint { t: 0.0, x: amplitude });
         let place = self.rest_point();
         let free = place.free_side(&self.model);
         let counted = |turn: &TurningPoint| TurningPoint { t: turn.t, x: turn.x - place.x };

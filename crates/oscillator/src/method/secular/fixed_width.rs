@@ -4,33 +4,30 @@
 //! whose symmetries are those of the [plan](super::modular) for primes. Low orders need no more
 //! than this, and long expansions estimate the growth of their denominators from it.
 //!
-//! Cost: for every product `O(N^2 K^2)` multiplications of words to order `N` with `K` harmonics;
-//! two words hold Duffing's equation to order 25.
+//! Cost: for every product `O(N^2 K^2)` multiplications of words to order `N` with `K` harmonics,
+//! and two pieces of memory for each table, whatever the order; two words hold Duffing's equation to
+//! order 25.
 
 use super::plan::{Plan, PlannedTerm};
 use super::{AmplitudeKind, Detuning, ExpansionScope};
-use crate::exact::residue::sums::Product;
 use crate::interrupt::Interrupt;
 use crate::series::fixed_width::{
-    HarmonicParity, ShortFraction, ShortSeries, combination, convolution, square,
+    HarmonicParity, SeriesBuffer, ShortFraction, ShortSeries, ShortSeriesList,
 };
 use crate::series::waves::Wave;
 use crate::solution::AmplitudeConvention;
 use num_traits::ToPrimitive;
 
-/// One order.
-pub(super) struct FixedWidthOrder {
-    pub displacement: ShortSeries,
-    /// `W_n` and `omega_n`.
-    pub frequency_squared: ShortFraction,
-    pub frequency: ShortFraction,
-}
-
 /// The first orders of an expansion in integers of fixed width.
 #[derive(Default)]
 pub(super) struct FirstOrders {
-    /// The orders from zero on; fewer than asked for if a number does not fit.
-    pub orders: Vec<FixedWidthOrder>,
+    /// Number of orders, from zero on; fewer than asked for if a number does not fit. The lists may
+    /// be longer.
+    pub count: usize,
+    pub displacement: ShortSeriesList,
+    /// `W_n` and `omega_n`.
+    pub frequency_squared: Vec<ShortFraction>,
+    pub frequency: Vec<ShortFraction>,
     /// The derivative of the secular sine in the amplitude, where that is determined.
     pub slope: Option<ShortFraction>,
 }
@@ -49,19 +46,17 @@ pub(super) fn beginning(plan: &Plan, extent: ExpansionScope, interrupt: Interrup
     // Before its order a term leaves no trace in the denominators.
     let furthest = plan.terms.iter().map(|term| term.order).max().unwrap_or(0);
     let few = FEW.max(furthest);
-    let mut beginning = FirstOrders::default();
-    if let Some(mut recursion) = Recursion::new(plan, extent, |_| 1) {
-        while recursion.complete <= last && !interrupt.is_requested() {
-            if recursion.next_order().is_none()
-                || (recursion.complete == few + 1 && !recursion.may_fit(last))
-            {
-                break;
-            }
+    let Some(mut recursion) = Recursion::new(plan, extent, |_| 1) else {
+        return FirstOrders::default();
+    };
+    while recursion.complete <= last && !interrupt.is_requested() {
+        if recursion.next_order().is_none()
+            || (recursion.complete == few + 1 && !recursion.may_fit(last))
+        {
+            break;
         }
-        beginning.slope = recursion.variation.as_ref().map(|variation| variation.slope);
-        beginning.orders = recursion.orders();
     }
-    beginning
+    recursion.orders()
 }
 
 /// The expansion to the highest order of a plan, with the coefficient of each term multiplied by a
@@ -70,7 +65,7 @@ pub(super) fn with_factors(
     plan: &Plan,
     extent: ExpansionScope,
     factor: impl Fn(usize) -> i128,
-) -> Option<Vec<FixedWidthOrder>> {
+) -> Option<FirstOrders> {
     let mut recursion = Recursion::new(plan, extent, factor)?;
     while recursion.complete <= plan.highest {
         recursion.next_order()?;
@@ -81,15 +76,16 @@ pub(super) fn with_factors(
 struct Recursion<'a> {
     plan: &'a Plan<'a>,
     extent: ExpansionScope,
-    /// The terms with their coefficients, each divided by the power of which the term is a
-    /// derivative; `None` for one that overflows.
-    terms: Vec<(&'a PlannedTerm, Option<(i128, i128)>)>,
+    terms: Vec<Term<'a>>,
     /// The tables of the plan, an entry for each order; the first is the motion.
-    tables: Vec<Vec<ShortSeries>>,
-    detuned: Vec<ShortSeries>,
-    derived: Vec<ShortSeries>,
-    /// The derivative of all terms with one velocity at each order, where there are any.
-    damped: Vec<Option<ShortSeries>>,
+    tables: Vec<ShortSeriesList>,
+    detuned: ShortSeriesList,
+    derived: ShortSeriesList,
+    /// The derivative of all terms with one velocity at each order; empty if there are none.
+    damped: ShortSeriesList,
+    /// Memory of the operations, and of the right side of an order.
+    buffer: SeriesBuffer,
+    right_side: SeriesBuffer,
     frequency_squared: Vec<ShortFraction>,
     frequency: Vec<ShortFraction>,
     /// A sine in addition to the terms.
@@ -101,9 +97,11 @@ struct Recursion<'a> {
 
 /// Derivatives of all quantities by the amplitude of `y_0`, for limit cycles.
 struct Variation {
-    tables: Vec<ShortSeries>,
-    right_side: ShortSeries,
-    damped: Option<ShortSeries>,
+    /// The only order of each table.
+    tables: ShortSeriesList,
+    /// The right side, and the derivative of the terms with one velocity.
+    right_side: SeriesBuffer,
+    damped: SeriesBuffer,
     slope: ShortFraction,
 }
 
@@ -118,11 +116,21 @@ impl<'a> Recursion<'a> {
             let power = if derivative { i128::from(term.position) + 1 } else { 1 };
             let denominator = term.coefficient.denom().to_i128()?.checked_mul(power)?;
             let numerator = term.coefficient.numer().to_i128()?.checked_mul(factor(place))?;
+            // So that it has a negative.
+            numerator.checked_neg()?;
             Some((numerator, denominator))
         };
         let terms = plan.terms.iter().zip(&plan.of_terms).enumerate();
-        let orders = LONG.min(plan.highest) + 2;
-        let list = || Vec::with_capacity(orders);
+        let last = plan.last.min(LONG + 1);
+        let list = || ShortSeriesList::with_capacity(last + 1, plan.starts[last + 1]);
+        let list_of = |is_needed: bool| if is_needed { list() } else { ShortSeriesList::default() };
+        // The sums of harmonics of a product reach twice as far.
+        let buffer = || SeriesBuffer::with_capacity(2 * plan.most_harmonics());
+        let numbers = || {
+            let mut numbers = Vec::with_capacity(last + 1);
+            numbers.push(ShortFraction::ONE);
+            numbers
+        };
         let mut recursion = Self {
             plan,
             extent,
@@ -139,19 +147,18 @@ impl<'a> Recursion<'a> {
             },
             tables: (0..plan.tables).map(|_| list()).collect(),
             detuned: list(),
-            derived: vec![],
-            damped: vec![None],
-            frequency_squared: Vec::with_capacity(orders),
-            frequency: Vec::with_capacity(orders),
+            derived: list_of(plan.has_velocity),
+            damped: list_of(plan.of_terms.iter().any(|(_, derivative)| *derivative)),
+            buffer: buffer(),
+            right_side: buffer(),
+            frequency_squared: numbers(),
+            frequency: numbers(),
             variation: None,
             complete: 0,
         };
-        recursion.frequency_squared.push(ShortFraction::ONE);
-        recursion.frequency.push(ShortFraction::ONE);
-        let mut start = vec![0; plan.resonant() + 1];
-        start[plan.resonant()] = 1;
-        let start = ShortSeries::new(Wave::Cosine, recursion.harmonics(), 1, start)?;
-        recursion.push_displacement(0, start)?;
+        let start: &[i128] = if plan.half_wave { &[1] } else { &[0, 1] };
+        recursion.right_side.set(ShortSeries::new(Wave::Cosine, recursion.harmonics(), 1, start)?);
+        recursion.push_displacement(0)?;
         match plan.scheme.amplitude {
             AmplitudeKind::Free => recursion.complete = 1,
             AmplitudeKind::Determined => recursion.variation = Some(recursion.variation()?),
@@ -162,11 +169,14 @@ impl<'a> Recursion<'a> {
     /// Whether the denominators of an order will fit if they go on growing as they did.
     fn may_fit(&self, order: usize) -> bool {
         /// Number of binary digits that fit.
-        const DIGITS: f64 = 126.0;
-        let digits = |order: usize| (self.tables[0][order].denominator() as f64).log2();
+        const DIGITS: usize = 126;
+        let digits = |order: usize| {
+            let denominator = self.tables[0].get(order).map_or(1, ShortSeries::denominator);
+            denominator.ilog2() as usize
+        };
         let (last, middle) = (self.complete - 1, (self.complete - 1) / 2);
-        let rate = (digits(last) - digits(middle)) / (last - middle).max(1) as f64;
-        digits(last) + rate * order.saturating_sub(last) as f64 <= DIGITS
+        let (grown, orders) = (digits(last).saturating_sub(digits(middle)), last - middle);
+        digits(last) + grown * order.saturating_sub(last) / orders.max(1) <= DIGITS
     }
 
     fn harmonics(&self) -> HarmonicParity {
@@ -177,26 +187,24 @@ impl<'a> Recursion<'a> {
     }
 
     /// Returns the orders that are complete.
-    fn orders(mut self) -> Vec<FixedWidthOrder> {
-        let numbers = self.frequency_squared.into_iter().zip(self.frequency);
-        let orders = self.tables.swap_remove(0).into_iter().zip(numbers).take(self.complete);
-        orders
-            .map(|(displacement, (frequency_squared, frequency))| FixedWidthOrder {
-                displacement,
-                frequency_squared,
-                frequency,
-            })
-            .collect()
+    fn orders(mut self) -> FirstOrders {
+        FirstOrders {
+            count: self.complete,
+            displacement: self.tables.swap_remove(0),
+            frequency_squared: self.frequency_squared,
+            frequency: self.frequency,
+            slope: self.variation.map(|variation| variation.slope),
+        }
     }
 
     /// Solves the order after those that are known; the last one of a limit cycle only fixes the
     /// amplitude of the order before. `None` if a number overflows, or if a secular sine remains.
     fn next_order(&mut self) -> Option<()> {
         let (plan, order) = (self.plan, self.tables[0].len());
-        let mut right_side = self.right_side(order)?;
+        self.form_right_side(order)?;
         if self.variation.is_some() {
             if order > 1 {
-                right_side = self.fix_amplitude(order, right_side)?;
+                self.fix_amplitude(order)?;
             }
             self.complete = order;
             if order > plan.highest {
@@ -204,8 +212,9 @@ impl<'a> Recursion<'a> {
                 return Some(());
             }
         }
+        let right_side = self.right_side.series();
         let resonance = right_side.coefficient(plan.resonant())?;
-        let square = match right_side.wave {
+        let square = match right_side.wave() {
             Wave::Sine if !resonance.is_zero() => return None,
             Wave::Sine => ShortFraction::ZERO,
             Wave::Cosine => resonance.negative(),
@@ -218,14 +227,15 @@ impl<'a> Recursion<'a> {
             && order == plan.highest
         {
             // Nothing that is wanted depends on the last motion.
-            let none = ShortSeries::new(right_side.wave, self.harmonics(), 1, vec![])?;
-            self.tables[0].push(none);
+            let harmonics = self.harmonics();
+            self.tables[0].push(ShortSeries::zero(plan.wave(order), harmonics));
             self.complete = order + 1;
             return Some(());
         }
-        let particular = right_side.without_resonance_over_divisors()?.reduced();
-        let displacement = self.normalised(particular)?;
-        self.push_displacement(order, displacement)?;
+        self.right_side.divide_by_divisors_without_resonance()?;
+        self.right_side.reduce();
+        self.normalise()?;
+        self.push_displacement(order)?;
         if self.variation.is_none() {
             self.complete = order + 1;
         }
@@ -244,154 +254,151 @@ impl<'a> Recursion<'a> {
         Some(frequency)
     }
 
-    /// `r_n` as in the head of the module.
-    fn right_side(&mut self, order: usize) -> Option<ShortSeries> {
+    /// Forms `r_n` as in the head of the module.
+    fn form_right_side(&mut self, order: usize) -> Option<()> {
         if let Some(sine) = &mut self.sine {
-            sine.prepare(order)?;
+            sine.prepare(order, &mut self.buffer)?;
         }
-        let at = |term: &PlannedTerm, table: usize| {
-            self.tables[table].get(order.checked_sub(term.order)?)
-        };
-        let damped = derivative_of_parts(&self.parts(true, at)?)?;
-        self.damped.push(damped);
-        let at = |term: &PlannedTerm, table: usize| {
-            self.tables[table].get(order.checked_sub(term.order)?)
-        };
-        let mut parts = self.parts(false, at)?;
-        let of_sine = self.sine.as_ref().and_then(|sine| sine.rest.as_ref());
-        parts.extend(of_sine.map(|rest| (1, 1, rest)));
-        for (numerator, _, _) in &mut parts {
-            *numerator = numerator.checked_neg()?;
-        }
-        let mut subtract = |factor: ShortFraction, series| {
-            if !factor.is_zero() {
-                parts.push((-factor.numerator(), factor.denominator(), series));
+        let zero = ShortSeries::zero(self.plan.wave(order), self.harmonics());
+        let Self { plan, terms, tables, frequency, frequency_squared, .. } = self;
+        let at =
+            |term: &PlannedTerm, table: usize| tables[table].get(order.checked_sub(term.order)?);
+        if plan.of_terms.iter().any(|(_, derivative)| *derivative) {
+            if order == 1 {
+                self.damped.push(zero);
             }
-        };
+            let damped = parts(plan, terms, true, at)?;
+            match derivative_of_parts(damped, &mut self.buffer)? {
+                true => self.damped.push(self.buffer.series()),
+                false => self.damped.push(zero),
+            }
+        }
+        // Room for the contributions of the frequency of all orders, too.
+        let mut all = Vec::with_capacity(2 * order + terms.len() + 1);
+        let mut subtract =
+            |numerator: i128, denominator, series| all.push((-numerator, denominator, series));
+        for (numerator, denominator, series) in parts(plan, terms, false, at)? {
+            subtract(numerator, denominator, series);
+        }
+        if let Some(rest) = self.sine.as_ref().and_then(Sine::rest) {
+            subtract(1, 1, rest);
+        }
         for i in 1..=order {
-            let present = self.plan.scheme.detuning == Detuning::Acceleration || i == order;
-            if let Some(damped) = self.damped[i].as_ref().filter(|_| present) {
-                subtract(self.frequency[order - i], damped);
+            let present = plan.scheme.detuning == Detuning::Acceleration || i == order;
+            if let Some(damped) = self.damped.get(i).filter(|_| present) {
+                let factor = frequency[order - i];
+                subtract(factor.numerator(), factor.denominator(), damped);
             }
-            if i < order {
-                subtract(self.frequency_squared[order - i], &self.detuned[i]);
-            }
-        }
-        parts.retain(|(_, _, series)| !series.is_zero());
-        match parts.is_empty() {
-            true => ShortSeries::new(self.plan.wave(order), self.harmonics(), 1, vec![0]),
-            false => combination(&parts),
-        }
-    }
-
-    /// The terms with a derivative or those without, each with the series that `at` selects from
-    /// its table.
-    fn parts<'b>(
-        &'b self,
-        derivative: bool,
-        at: impl Fn(&PlannedTerm, usize) -> Option<&'b ShortSeries>,
-    ) -> Option<Vec<(i128, i128, &'b ShortSeries)>> {
-        // Room for the contributions of the frequency of all orders, too; mostly no term has a
-        // derivative.
-        let room = 2 * self.tables[0].len() + self.terms.len() + 1;
-        let mut parts = if derivative { vec![] } else { Vec::with_capacity(room) };
-        for ((term, coefficient), (table, own)) in self.terms.iter().zip(&self.plan.of_terms) {
-            if let Some(series) = at(term, *table).filter(|_| *own == derivative) {
-                let (numerator, denominator) = (*coefficient)?;
-                parts.push((numerator, denominator, series));
+            if let Some(detuned) = self.detuned.get(i).filter(|_| i < order) {
+                let factor = frequency_squared[order - i];
+                subtract(factor.numerator(), factor.denominator(), detuned);
             }
         }
-        Some(parts)
+        all.retain(|(numerator, _, series)| *numerator != 0 && !series.is_zero());
+        match all.is_empty() {
+            true => self.right_side.set(zero),
+            false => self.right_side.set_combination(&all)?,
+        }
+        Some(())
     }
 
     /// Chooses the amplitude of `y_(order-1)` so that the right side of `order` has no secular
     /// sine.
-    fn fix_amplitude(&mut self, order: usize, right_side: ShortSeries) -> Option<ShortSeries> {
+    fn fix_amplitude(&mut self, order: usize) -> Option<()> {
         let (plan, variation) = (self.plan, self.variation.as_ref()?);
+        let right_side = self.right_side.series();
         let sine = right_side.coefficient(plan.resonant())?;
-        if right_side.wave == Wave::Cosine || sine.is_zero() {
-            return Some(right_side);
+        if right_side.wave() == Wave::Cosine || sine.is_zero() {
+            return Some(());
         }
         // The change of the amplitude is minus the sine over its slope.
         let amplitude = sine.quotient(variation.slope)?.negative();
         let change = (amplitude.numerator(), amplitude.denominator());
-        let changed = |series: &ShortSeries, by: &ShortSeries| {
-            combination(&[(1, 1, series), (change.0, change.1, by)]).map(ShortSeries::reduced)
-        };
-        for (table, by) in self.tables.iter_mut().zip(&variation.tables) {
-            if let Some(series) = table.get_mut(order - 1) {
-                *series = changed(series, by)?;
+        let buffer = &mut self.buffer;
+        // The right side first: its memory is that of the buffer afterwards.
+        set_changed(buffer, right_side, change, variation.right_side.series())?;
+        std::mem::swap(buffer, &mut self.right_side);
+        for (index, table) in self.tables.iter_mut().enumerate() {
+            // A table ends before the orders that nothing needs.
+            if let Some(series) = table.get(order - 1) {
+                set_changed(buffer, series, change, variation.tables.get(index)?)?;
+                table.replace_last(buffer.series());
             }
         }
-        let corrected = self.tables[0][order - 1].clone();
-        if let (Some(damped), Some(by)) = (self.damped[order].as_mut(), &variation.damped) {
-            *damped = changed(damped, by)?;
+        if let Some(damped) = self.damped.get(order) {
+            set_changed(buffer, damped, change, variation.damped.series())?;
+            self.damped.replace_last(buffer.series());
         }
-        let right_side = changed(&right_side, &variation.right_side)?;
-        self.detuned[order - 1] = frequency_factor(plan, &corrected)?;
+        let corrected = self.tables[0].get(order - 1)?;
+        set_frequency_factor(plan, corrected, buffer)?;
+        self.detuned.replace_last(buffer.series());
         if plan.has_velocity {
-            self.derived[order - 1] = corrected.derivative()?;
+            buffer.set_derivative(corrected)?;
+            self.derived.replace_last(buffer.series());
         }
-        Some(right_side)
+        Some(())
     }
 
-    /// Adds to the solution of an order the homogeneous one that the amplitude convention asks for.
-    fn normalised(&self, particular: ShortSeries) -> Option<ShortSeries> {
+    /// Adds to the solution of an order, which stands in place of the right side, the homogeneous
+    /// one that the amplitude convention asks for.
+    fn normalise(&mut self) -> Option<()> {
         let plan = self.plan;
         if plan.scheme.normalisation == AmplitudeConvention::FirstHarmonic {
-            return Some(particular);
+            return Some(());
         }
+        let particular = self.right_side.series();
         let mut numerators = particular.numerators().iter();
-        let at_zero = match (particular.wave, plan.scheme.amplitude) {
+        let at_zero = match (particular.wave(), plan.scheme.amplitude) {
             (Wave::Sine, _) => numerators.enumerate().try_fold(0_i128, |sum, (index, own)| {
                 sum.checked_add(own.checked_mul(plan.harmonic(index) as i128)?)
             }),
             (Wave::Cosine, AmplitudeKind::Free) => {
                 numerators.try_fold(0_i128, |sum, own| sum.checked_add(*own))
             }
-            (Wave::Cosine, AmplitudeKind::Determined) => return Some(particular),
+            (Wave::Cosine, AmplitudeKind::Determined) => return Some(()),
         };
-        particular.with_numerator(plan.resonant(), at_zero?.checked_neg()?)
+        self.right_side.set_numerator(plan.resonant(), at_zero?.checked_neg()?)
     }
 
-    fn push_displacement(&mut self, order: usize, displacement: ShortSeries) -> Option<()> {
+    /// Takes the motion of an order, which stands in place of the right side.
+    fn push_displacement(&mut self, order: usize) -> Option<()> {
         let plan = self.plan;
-        self.detuned.push(frequency_factor(plan, &displacement)?);
-        if plan.has_velocity {
-            self.derived.push(displacement.derivative()?);
-            let velocity = match plan.scheme.detuning {
-                Detuning::Displacement => self.derived[order].clone(),
-                Detuning::Acceleration => {
-                    let factors = self.frequency.iter().zip(self.derived.iter().rev());
-                    let factors = factors.filter(|(factor, _)| !factor.is_zero());
-                    let parts = factors
-                        .map(|(factor, own)| (factor.numerator(), factor.denominator(), own));
-                    combination(&parts.collect::<Vec<_>>())?.reduced()
-                }
-            };
-            self.tables[1].push(velocity);
-        }
+        let (buffer, displacement) = (&mut self.buffer, self.right_side.series());
+        set_frequency_factor(plan, displacement, buffer)?;
+        self.detuned.push(buffer.series());
         self.tables[0].push(displacement);
+        if plan.has_velocity {
+            buffer.set_derivative(displacement)?;
+            self.derived.push(buffer.series());
+            if plan.scheme.detuning == Detuning::Acceleration {
+                let factors = self.frequency.iter().enumerate().take(order + 1);
+                let parts =
+                    factors.filter(|(_, factor)| !factor.is_zero()).filter_map(|(i, own)| {
+                        Some((own.numerator(), own.denominator(), self.derived.get(order - i)?))
+                    });
+                buffer.set_combination(&parts.collect::<Vec<_>>())?;
+                buffer.reduce();
+            }
+            self.tables[1].push(buffer.series());
+        }
         for product in &plan.products {
             if order <= product.needed {
-                let series = self.convolution(product, order)?;
-                self.tables[product.to].push(series);
+                match product.left == product.right {
+                    true => buffer.set_square(&self.tables[product.left], order)?,
+                    false => {
+                        let (left, right) =
+                            (&self.tables[product.left], &self.tables[product.right]);
+                        buffer.set_convolution(left, right, 0, order)?;
+                    }
+                }
+                buffer.reduce();
+                self.tables[product.to].push(buffer.series());
             }
         }
         match &mut self.sine {
-            Some(sine) => sine.push(order, &self.tables[0][order]),
+            Some(sine) => sine.push(order, displacement, buffer),
             None => Some(()),
         }
-    }
-
-    /// One order of a product.
-    fn convolution(&self, product: &Product, order: usize) -> Option<ShortSeries> {
-        let (left, right) = (&self.tables[product.left], &self.tables[product.right]);
-        let sum = match product.left == product.right {
-            true => square(&left[..=order]),
-            false => convolution(&left[..=order], &right[..=order]),
-        };
-        sum.map(ShortSeries::reduced)
     }
 
     /// The first variation at order zero; `None` if the secular sine does not depend on the
@@ -400,94 +407,167 @@ impl<'a> Recursion<'a> {
         let plan = self.plan;
         // The first tables, of y and of omega y', are their own variations.
         let leaves = 1 + usize::from(plan.has_velocity);
-        let mut tables: Vec<ShortSeries> =
-            self.tables[..leaves].iter().map(|table| table[0].clone()).collect();
-        for product in &plan.products {
-            let varied = |varied: usize, other: usize| {
-                let own = std::slice::from_ref(&tables[varied]);
-                convolution(own, &self.tables[other][..1])
-            };
-            let (left, right) =
-                (varied(product.left, product.right)?, varied(product.right, product.left)?);
-            let series = combination(&[(1, 1, &left), (1, 1, &right)])?.reduced();
-            tables.push(series);
+        let mut tables = ShortSeriesList::default();
+        for table in &self.tables[..leaves] {
+            tables.push(table.get(0)?);
         }
-        let at = |term: &PlannedTerm, table: usize| tables.get(table).filter(|_| term.order == 1);
-        let plain = sum_of_parts(&self.parts(false, at)?)?;
-        let damped = derivative_of_parts(&self.parts(true, at)?)?;
-        let parts: Vec<_> = plain.iter().chain(&damped).map(|part| (-1, 1, part)).collect();
-        let right_side = combination(&parts)?.reduced();
-        let slope = right_side.coefficient(plan.resonant())?;
-        (!slope.is_zero()).then_some(Variation { tables, right_side, damped, slope })
+        let [mut left, mut right, mut sum]: [SeriesBuffer; 3] = Default::default();
+        for product in &plan.products {
+            let varied = |varied: usize, other: usize, buffer: &mut SeriesBuffer| {
+                buffer.set_product(tables.get(varied)?, self.tables[other].get(0)?)
+            };
+            varied(product.left, product.right, &mut left)?;
+            varied(product.right, product.left, &mut right)?;
+            let both = [(1, 1, left.series()), (1, 1, right.series())];
+            sum.set_combination(&both)?;
+            sum.reduce();
+            tables.push(sum.series());
+        }
+        let [mut plain, mut damped, mut right_side]: [SeriesBuffer; 3] = Default::default();
+        let (is_plain, is_damped) = {
+            let at =
+                |term: &PlannedTerm, table: usize| tables.get(table).filter(|_| term.order == 1);
+            let parts_with = |derivative| parts(plan, &self.terms, derivative, at);
+            let own = parts_with(false)?;
+            let is_plain = own.clone().next().is_some();
+            if is_plain {
+                plain.set_combination(&own.collect::<Vec<_>>())?;
+            }
+            (is_plain, derivative_of_parts(parts_with(true)?, &mut damped)?)
+        };
+        let parts = [(is_plain, plain.series()), (is_damped, damped.series())].into_iter();
+        let parts = parts.filter(|(is_any, _)| *is_any).map(|(_, series)| (-1, 1, series));
+        right_side.set_combination(&parts.collect::<Vec<_>>())?;
+        right_side.reduce();
+        let slope = right_side.series().coefficient(plan.resonant())?;
+        if slope.is_zero() {
+            return None;
+        }
+        Some(Variation { tables, right_side, damped, slope })
     }
 }
 
-/// `y_n''` or `-y_n`: what the corrections of the frequency multiply.
-fn frequency_factor(plan: &Plan, displacement: &ShortSeries) -> Option<ShortSeries> {
+/// Sets `series + change by`, in lowest terms.
+fn set_changed(
+    buffer: &mut SeriesBuffer,
+    series: ShortSeries,
+    (numerator, denominator): (i128, i128),
+    by: ShortSeries,
+) -> Option<()> {
+    buffer.set_combination(&[(1, 1, series), (numerator, denominator, by)])?;
+    buffer.reduce();
+    Some(())
+}
+
+/// A term of the force with its coefficient, divided by the power of which the term is a derivative;
+/// `None` for one that overflows.
+type Term<'a> = (&'a PlannedTerm, Option<(i128, i128)>);
+
+/// The terms with a derivative or those without, each with the series that `at` selects from its
+/// table; `None` if a coefficient of one is too long.
+fn parts<'b>(
+    plan: &'b Plan,
+    terms: &'b [Term],
+    derivative: bool,
+    at: impl Fn(&PlannedTerm, usize) -> Option<ShortSeries<'b>> + Copy,
+) -> Option<impl Iterator<Item = (i128, i128, ShortSeries<'b>)> + Clone> {
+    let own = terms.iter().zip(&plan.of_terms).filter(move |(_, (_, own))| *own == derivative);
+    let parts = own.filter_map(move |((term, coefficient), (table, _))| {
+        at(term, *table).map(|series| (*coefficient, series))
+    });
+    let fits = parts.clone().all(|(coefficient, _)| coefficient.is_some());
+    fits.then(|| {
+        parts.filter_map(|(coefficient, series)| {
+            coefficient.map(|(numerator, denominator)| (numerator, denominator, series))
+        })
+    })
+}
+
+/// Sets `y_n''` or `-y_n`: what the corrections of the frequency multiply.
+fn set_frequency_factor(
+    plan: &Plan,
+    displacement: ShortSeries,
+    buffer: &mut SeriesBuffer,
+) -> Option<()> {
     match plan.scheme.detuning {
-        Detuning::Acceleration => displacement.second_derivative(),
-        Detuning::Displacement => combination(&[(-1, 1, displacement)]),
+        Detuning::Acceleration => buffer.set_second_derivative(displacement),
+        Detuning::Displacement => buffer.set_combination(&[(-1, 1, displacement)]),
     }
 }
 
-/// The sum of the parts; the inner `None` if there are none.
-fn sum_of_parts(parts: &[(i128, i128, &ShortSeries)]) -> Option<Option<ShortSeries>> {
-    match parts.is_empty() {
-        true => Some(None),
-        false => combination(parts).map(Some),
+/// Sets the derivative of the sum of the parts; returns whether there are any.
+fn derivative_of_parts<'a>(
+    parts: impl Iterator<Item = (i128, i128, ShortSeries<'a>)> + Clone,
+    buffer: &mut SeriesBuffer,
+) -> Option<bool> {
+    if parts.clone().next().is_none() {
+        return Some(false);
     }
-}
-
-/// The derivative of the sum of the parts; the inner `None` if there are none.
-fn derivative_of_parts(parts: &[(i128, i128, &ShortSeries)]) -> Option<Option<ShortSeries>> {
-    match sum_of_parts(parts)? {
-        Some(sum) => Some(Some(sum.derivative()?.reduced())),
-        None => Some(None),
-    }
+    buffer.set_combination(&parts.collect::<Vec<_>>())?;
+    buffer.differentiate()?;
+    buffer.reduce();
+    Some(true)
 }
 
 /// The [sine](super::sine) of the motion, order by order.
 struct Sine {
     rate: (i128, i128),
     /// `V`, `S` and `C`.
-    scaled: Vec<ShortSeries>,
-    sine: Vec<ShortSeries>,
-    cosine: Vec<ShortSeries>,
-    /// `S` of the next order without the contribution of its own motion.
-    rest: Option<ShortSeries>,
+    scaled: ShortSeriesList,
+    sine: ShortSeriesList,
+    cosine: ShortSeriesList,
+    /// `S` of the next order without the contribution of its own motion, from order one on.
+    rest: ShortSeriesList,
 }
 
 impl Sine {
     fn new(rate: (i128, i128)) -> Self {
-        Self { rate, scaled: vec![], sine: vec![], cosine: vec![], rest: None }
+        let list = ShortSeriesList::default;
+        Self { rate, scaled: list(), sine: list(), cosine: list(), rest: list() }
+    }
+
+    /// `S_n - y_n` of the order that has been prepared.
+    fn rest(&self) -> Option<ShortSeries<'_>> {
+        self.rest.get(0)
     }
 
     /// Forms `S_n - y_n`, for the order after those that are known.
-    fn prepare(&mut self, order: usize) -> Option<()> {
-        let sum = convolution(&self.cosine[1..=order], &self.scaled[..order])?;
+    fn prepare(&mut self, order: usize, buffer: &mut SeriesBuffer) -> Option<()> {
+        buffer.set_convolution(&self.cosine, &self.scaled, 1, order)?;
         let twice_and_half = 2 * i128::try_from(order).ok()? + 1;
-        self.rest = Some(combination(&[(2, twice_and_half, &sum)])?.reduced());
+        buffer.multiply(2, twice_and_half)?;
+        self.rest.replace_last(buffer.series());
         Some(())
     }
 
     /// Takes the motion of an order.
-    fn push(&mut self, order: usize, displacement: &ShortSeries) -> Option<()> {
+    fn push(
+        &mut self,
+        order: usize,
+        displacement: ShortSeries,
+        buffer: &mut SeriesBuffer,
+    ) -> Option<()> {
         let number = i128::try_from(order).ok()?;
-        self.scaled.push(combination(&[(2 * number + 1, 2, displacement)])?.reduced());
-        match self.rest.take() {
+        buffer.set(displacement);
+        buffer.multiply(2 * number + 1, 2)?;
+        self.scaled.push(buffer.series());
+        match self.rest.get(0) {
             Some(rest) => {
-                self.sine.push(combination(&[(1, 1, &rest), (1, 1, displacement)])?.reduced())
+                let both = [(1, 1, rest), (1, 1, displacement)];
+                buffer.set_combination(&both)?;
+                buffer.reduce();
+                self.sine.push(buffer.series());
             }
             None => {
                 // At order zero the sine is the motion, and the cosine is one.
-                self.sine.push(displacement.clone());
+                self.sine.push(displacement);
                 let harmonics = displacement.harmonics().times(displacement.harmonics());
-                self.cosine.push(ShortSeries::constant(harmonics, 1, 1)?);
+                self.cosine.push(ShortSeries::new(Wave::Cosine, harmonics, 1, &[1])?);
             }
         }
-        let sum = convolution(&self.sine[..=order], &self.scaled[..=order])?;
-        let over = self.rate.1.checked_mul(number + 1)?;
-        self.cosine.push(combination(&[(self.rate.0, over, &sum)])?.reduced());
+        buffer.set_convolution(&self.sine, &self.scaled, 0, order)?;
+        buffer.multiply(self.rate.0, self.rate.1.checked_mul(number + 1)?)?;
+        self.cosine.push(buffer.series());
         Some(())
     }
 }

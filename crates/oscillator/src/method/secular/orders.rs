@@ -8,7 +8,7 @@ use super::reconstruct::ExpansionScope;
 use super::{AmplitudeKind, SecularExpansion, SecularSine};
 use crate::exact::{Integer, Integers, Rational};
 use crate::series::FourierSeries;
-use crate::series::fixed_width::ShortFraction;
+use crate::series::fixed_width::{ShortFraction, ShortSeries};
 use crate::series::waves::Wave;
 
 /// One order of the result.
@@ -21,22 +21,84 @@ pub(super) struct ExpansionOrder {
 }
 
 impl ExpansionOrder {
-    /// Converts an order from numbers of fixed width.
-    pub fn of_short(plan: &Plan, order: usize, own: &fixed_width::FixedWidthOrder) -> Self {
-        let constant = |own: ShortFraction| {
-            Rational::new_raw(own.numerator().into(), own.denominator().into())
-        };
-        let motion = &own.displacement;
-        let first = match (motion.wave, plan.scheme.amplitude) {
+    /// Converts an order from numbers of fixed width; `None` if it is not among them.
+    pub fn of_short(plan: &Plan, order: usize, orders: &fixed_width::FirstOrders) -> Option<Self> {
+        let motion = orders.displacement.get(order).filter(|_| order < orders.count)?;
+        let first = match (motion.wave(), plan.scheme.amplitude) {
             (Wave::Cosine, AmplitudeKind::Determined) => motion.coefficient(plan.resonant()),
             _ => None,
         };
         let numerators = motion.numerators().iter().copied().map(Integer::from);
-        Self {
+        Some(Self {
             displacement: motion_of_order(plan, order, motion.denominator().into(), numerators),
-            first_harmonic: first.map_or_else(Rational::zero, constant),
-            frequency_squared: constant(own.frequency_squared),
-            frequency: constant(own.frequency),
+            first_harmonic: first.map_or_else(Rational::zero, rational),
+            frequency_squared: rational(orders.frequency_squared[order]),
+            frequency: rational(orders.frequency[order]),
+        })
+    }
+}
+
+/// All orders of an expansion in numbers of fixed width; `slope` is that of the secular sine in the
+/// amplitude.
+pub(super) fn short_expansion(
+    plan: &Plan,
+    orders: &fixed_width::FirstOrders,
+    slope: Option<&Rational>,
+    extent: ExpansionScope,
+) -> SecularExpansion<Integers> {
+    let constant = |own: &ShortFraction| match own.is_zero() {
+        true => FourierSeries::zero(Integers),
+        false => {
+            let numerator = vec![own.numerator().into()];
+            FourierSeries::in_lowest_terms(Integers, own.denominator().into(), numerator, vec![])
+        }
+    };
+    let constants = |all: &[ShortFraction]| all.iter().take(orders.count).map(constant).collect();
+    let motions =
+        (0..orders.count).filter_map(|order| Some((order, orders.displacement.get(order)?)));
+    let first_harmonic = |motion: ShortSeries| match motion.wave() {
+        Wave::Cosine => motion.coefficient(plan.resonant()).map_or_else(Rational::zero, rational),
+        Wave::Sine => Rational::zero(),
+    };
+    let condition = |slope: &Rational| {
+        let motions = motions.clone().skip(1);
+        motions.map(|(_, motion)| secular_sine(first_harmonic(motion), slope)).collect()
+    };
+    let displacement = |(order, motion): (usize, ShortSeries)| {
+        let numerators = motion.numerators().iter().copied().map(Integer::from);
+        motion_of_order(plan, order, motion.denominator().into(), numerators)
+    };
+    SecularExpansion {
+        frequency_squared: constants(&orders.frequency_squared),
+        frequency: constants(&orders.frequency),
+        amplitudes: slope.map(condition).unwrap_or_default(),
+        displacement: match extent {
+            ExpansionScope::Motion => motions.map(displacement).collect(),
+            ExpansionScope::Frequency => vec![],
+        },
+    }
+}
+
+fn rational(own: ShortFraction) -> Rational {
+    Rational::new_raw(own.numerator().into(), own.denominator().into())
+}
+
+/// The condition of an amplitude, which is the first harmonic of a limit cycle.
+fn secular_sine(first_harmonic: Rational, slope: &Rational) -> SecularSine<Integers> {
+    SecularSine {
+        sine: constant(-(&first_harmonic * slope)),
+        slope: constant(slope.clone()),
+        amplitude: constant(first_harmonic),
+    }
+}
+
+/// A number as a constant series.
+fn constant(value: Rational) -> FourierSeries<Integers> {
+    match value.is_zero() {
+        true => FourierSeries::zero(Integers),
+        false => {
+            let (numerator, denominator) = value.into_raw();
+            FourierSeries::in_lowest_terms(Integers, denominator, vec![numerator], vec![])
         }
     }
 }
@@ -67,13 +129,6 @@ pub(super) fn expansion(
     slope: Option<&Rational>,
     extent: ExpansionScope,
 ) -> SecularExpansion<Integers> {
-    let constant = |value: Rational| match value.is_zero() {
-        true => FourierSeries::zero(Integers),
-        false => {
-            let (numerator, denominator) = value.into_raw();
-            FourierSeries::in_lowest_terms(Integers, denominator, vec![numerator], vec![])
-        }
-    };
     let mut expansion = SecularExpansion {
         frequency_squared: Vec::with_capacity(orders.len()),
         frequency: Vec::with_capacity(orders.len()),
@@ -83,11 +138,7 @@ pub(super) fn expansion(
     for (order, own) in orders.into_iter().enumerate() {
         // The first harmonic of a limit cycle is the amplitude that its secular sine has fixed.
         if let Some(slope) = slope.filter(|_| order > 0) {
-            expansion.amplitudes.push(SecularSine {
-                sine: constant(-(&own.first_harmonic * slope)),
-                slope: constant(slope.clone()),
-                amplitude: constant(own.first_harmonic),
-            });
+            expansion.amplitudes.push(secular_sine(own.first_harmonic, slope));
         }
         expansion.frequency_squared.push(constant(own.frequency_squared));
         expansion.frequency.push(constant(own.frequency));

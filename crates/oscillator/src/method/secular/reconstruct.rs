@@ -20,7 +20,7 @@ use num_traits::{One, Zero};
 
 use super::denominators::{Factored, Growth};
 use super::modular::{PrimeImage, Recursion};
-use super::orders::{ExpansionOrder, expansion, motion_of_order};
+use super::orders::{ExpansionOrder, expansion, motion_of_order, short_expansion};
 use super::plan::{Plan, PlannedTerm};
 use super::{AmplitudeKind, ForceTerm, Scheme, SecularExpansion, fixed_width};
 use crate::exact::residue::remainder::{ReconstructedIntegers, Remainders, fraction};
@@ -64,15 +64,12 @@ pub fn expand(
             Some(slope(force, scheme, &beginning)?)
         }
     };
-    let orders: Vec<ExpansionOrder> = beginning
-        .orders
-        .iter()
-        .enumerate()
-        .map(|(order, own)| ExpansionOrder::of_short(&plan, order, own))
-        .collect();
-    if orders.len() > highest {
-        return Some(expansion(orders, slope.as_ref(), extent));
+    if beginning.count > highest {
+        return Some(short_expansion(&plan, &beginning, slope.as_ref(), extent));
     }
+    let orders: Vec<ExpansionOrder> = (0..beginning.count)
+        .map_while(|order| ExpansionOrder::of_short(&plan, order, &beginning))
+        .collect();
     if highest < LONG {
         return None;
     }

@@ -202,11 +202,11 @@ fn short_orders(
         let expansion = fixed_width::with_factors(plan, extent, factor)?;
         // The points of an order come after those of all lower orders.
         let first = lower_set.counts.partition_point(|count| *count <= place);
-        for (order, own) in expansion.iter().enumerate().skip(first) {
-            let values = &mut at_orders[order];
-            values.extend([own.frequency, own.frequency_squared]);
+        for (order, values) in at_orders.iter_mut().enumerate().skip(first) {
+            values.extend([expansion.frequency[order], expansion.frequency_squared[order]]);
+            let displacement = expansion.displacement.get(order)?;
             for index in 2..numbers(plan, extent, order) {
-                values.push(own.displacement.coefficient(index - 2)?);
+                values.push(displacement.coefficient(index - 2)?);
             }
         }
     }

@@ -294,13 +294,15 @@ fn run_sweep(course: &TrajectoryRequest, asked: &SimulateArguments) -> Result<Ou
                 .to_owned(),
         ));
     }
-    if asked.sweep.len() > 1 && common.draws() {
+    let names: Vec<Symbol> = asked.sweep.iter().map(|axis| Symbol::new(axis.name())).collect();
+    let are_starts = names.iter().all(|name| course.rates.states.contains(name));
+    let has_basins = names.len() == 2 && are_starts && course.section.is_some();
+    if names.len() > 1 && !has_basins && common.draws() {
         return Err(Failure::Usage(
-            "--plot draws the motions over one parameter, but more are swept: leave out --plot"
+            "--plot draws the motions over one parameter, or basins over two coordinates or velocities of the start with --every or --section: leave out --plot"
                 .to_owned(),
         ));
     }
-    let names: Vec<Symbol> = asked.sweep.iter().map(|axis| Symbol::new(axis.name())).collect();
     let parameters = course.parameters();
     for (index, name) in names.iter().enumerate() {
         if !parameters.contains(name) && !course.rates.states.contains(name) {

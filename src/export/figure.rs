@@ -97,18 +97,23 @@ impl CurveStyle {
     pub const TWO_MOTIONS: Self = Self("#e69f00", POINTS, 2.2);
     /// Places with more stable motions.
     pub const MANY_MOTIONS: Self = Self("#cc79a7", POINTS, 2.8);
-    /// Places that belong together, one style for each of several sets of them.
-    pub const REGIONS: [Self; 7] = [
-        Self("#56b4e9", POINTS, 2.2),
-        Self("#e69f00", POINTS, 2.2),
-        Self("#009e73", POINTS, 2.2),
-        Self("#cc79a7", POINTS, 2.2),
-        Self("#0072b2", POINTS, 2.2),
-        Self("#d55e00", POINTS, 2.2),
-        Self("#f0e442", POINTS, 2.2),
-    ];
-    /// Places that belong to none of these sets.
-    pub const OUTSIDE: Self = Self("#000000", POINTS, 2.2);
+    /// The number of regions of a plane that have colours of their own.
+    pub const REGIONS: usize = 6;
+    /// The style of the bars of which a region of a plane is made, this wide: of the numbered ones, then of all
+    /// others.
+    pub fn region(index: usize, width: f64) -> Self {
+        const COLOURS: [&str; CurveStyle::REGIONS + 1] =
+            ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#0072b2", "#d55e00", "#f0e442"];
+        Self(COLOURS[index.min(Self::REGIONS)], "none", width)
+    }
+    /// The style of the bars of what belongs to no region, this wide.
+    pub fn no_region(width: f64) -> Self {
+        Self("#bbbbbb", "none", width)
+    }
+    /// The style of the bars of what lies outside of all regions, this wide.
+    pub fn outside(width: f64) -> Self {
+        Self("#333333", "none", width)
+    }
     /// One of many curves, which need not be distinguished.
     pub const ONE_OF_MANY: Self = Self("#bbbbbb", "none", 0.7);
     #[cfg(feature = "plot")]

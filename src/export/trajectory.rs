@@ -291,34 +291,64 @@ fn basins_picture(
     basins: &Basins,
     [across, up]: [&Symbol; 2],
 ) -> Result<String, FigureError> {
-    let starts = |fate: Fate| -> Points {
-        let all = basins.fates.iter().zip(sweep.motions).filter(|(own, _)| **own == fate);
-        all.map(|(_, motion)| (motion.values[0], motion.values[1])).collect()
+    /// Width of the axes, of which the columns take the part that the margins leave.
+    const WIDTH: f64 = 790.0 / 1.1;
+    let columns = sweep.motions.chunk_by(|one, other| one.values[0] == other.values[0]).count();
+    let width = WIDTH / columns.saturating_sub(1).max(1) as f64;
+    let last = CurveStyle::REGIONS;
+    let look = |fate: Fate| match fate {
+        Fate::Settled(index) if index < last => {
+            let states = basins.attractors[index].states.len();
+            let states = if states == 1 { String::new() } else { format!(", {states} states") };
+            (format!("attractor {}{states}", index + 1), CurveStyle::region(index, width))
+        }
+        Fate::Settled(_) => ("other attractors".to_owned(), CurveStyle::region(last, width)),
+        Fate::Unsettled => ("does not settle".to_owned(), CurveStyle::no_region(width)),
+        Fate::Ended => ("ends early".to_owned(), CurveStyle::outside(width)),
     };
+    let mut bars: Vec<(Fate, Points)> = Vec::new();
+    let fated: Vec<(&SweptMotion, Fate)> =
+        sweep.motions.iter().zip(basins.fates.iter().copied()).collect();
+    for column in fated.chunk_by(|one, other| one.0.values[0] == other.0.values[0]) {
+        // Each start stands for the places up to the middle between it and the next one.
+        let height = |index: usize| column[index].0.values[1];
+        let middle = |index: usize| 0.5 * (height(index) + height(index - 1));
+        let end = column.len() - 1;
+        let mut index = 0;
+        for run in column.chunk_by(|one, other| one.1 == other.1) {
+            let (first, next) = (index, index + run.len());
+            let low = if first == 0 { height(0) } else { middle(first) };
+            let high = if next > end { height(end) } else { middle(next) };
+            bars.push((run[0].1, [low, high].map(|y| (column[0].0.values[0], y)).into()));
+            index = next;
+        }
+    }
+    let order = |fate: Fate| match fate {
+        Fate::Settled(index) => index,
+        Fate::Unsettled => usize::MAX - 1,
+        Fate::Ended => usize::MAX,
+    };
+    bars.sort_by_key(|(fate, _)| order(*fate));
     let states = &sweep.course.rates.states;
     let place = |name: &Symbol| states.iter().position(|state| state == name).unwrap_or(0);
-    let last = CurveStyle::REGIONS.len() - 1;
-    let mut drawn: Vec<(String, Points, CurveStyle)> = Vec::new();
-    for (index, attractor) in basins.attractors.iter().enumerate().take(last) {
-        let label = match attractor.states.len() {
-            1 => format!("attractor {}", index + 1),
-            count => format!("attractor {}, {count} states", index + 1),
-        };
-        drawn.push((label, starts(Fate::Settled(index)), CurveStyle::REGIONS[index]));
-    }
-    let others = (last..basins.attractors.len()).flat_map(|index| starts(Fate::Settled(index)));
-    drawn.push(("other attractors".to_owned(), others.collect(), CurveStyle::REGIONS[last]));
-    drawn.push(("does not settle".to_owned(), starts(Fate::Unsettled), CurveStyle::NO_MOTION));
-    drawn.push(("ends early".to_owned(), starts(Fate::Ended), CurveStyle::OUTSIDE));
     let of_attractors = basins.attractors.iter().flat_map(|attractor| &attractor.states);
-    let of_attractors = of_attractors.map(|state| (state[place(across)], state[place(up)]));
-    let marks = CurveStyle::SECOND_MARKED_POINTS;
-    drawn.push(("states of the attractors".to_owned(), of_attractors.collect(), marks));
-    drawn.retain(|(_, points, _)| !points.is_empty());
-    let curves = drawn.iter().map(|(label, points, style)| curve(label, points, *style));
+    let of_attractors: Points =
+        of_attractors.map(|state| (state[place(across)], state[place(up)])).collect();
+    let drawn: Vec<(String, &Points, CurveStyle)> = bars
+        .iter()
+        .map(|(fate, points)| {
+            let (label, style) = look(*fate);
+            (label, points, style)
+        })
+        .collect();
+    let mut curves: Vec<_> =
+        drawn.iter().map(|(label, points, style)| curve(label, points, *style)).collect();
+    if !of_attractors.is_empty() {
+        let marks = CurveStyle::SECOND_MARKED_POINTS;
+        curves.push(curve("states of the attractors", &of_attractors, marks));
+    }
     let labels = [across, up].map(|name| name.name().replace('\'', "′"));
-    let panels =
-        [panel("Basins of attraction", [&labels[0], &labels[1]], curves.collect(), vec![])];
+    let panels = [panel("Basins of attraction", [&labels[0], &labels[1]], curves, vec![])];
     figure(&panels, &sweep_in_words(sweep.course))
 }
 

@@ -833,3 +833,32 @@ fn a_place_without_digits_is_refused() {
         assert!(!message.contains("no digits left"), "{arguments:?}: {message}");
     }
 }
+
+/// Many starts have attractors in text and document, and a picture of their basins.
+#[test]
+fn starts_in_a_plane_have_basins() {
+    let wells = ["simulate", "x'' + x'/2 - x + x^3 = 0", "--sweep", "x=-1.5:1.5:6"];
+    let both = [&wells[..], &["--sweep", "x'=-1:1:4", "--until", "80", "--after", "60"]].concat();
+    let section = ["--every", "1"];
+    let text = output(&[&both[..], &section].concat());
+    assert!(text.contains("Attractors, with the number of their states on the section"), "{text}");
+    let shares: Vec<&str> = text.lines().filter(|line| line.contains("12    50 %")).collect();
+    assert_eq!(shares.len(), 2, "{text}");
+    let document = json(&[&both[..], &section, &["--format", "json"]].concat());
+    let motions = document["motions"].as_array().expect("motions");
+    let attractors = document["attractors"].as_array().expect("attractors");
+    assert_eq!((motions.len(), attractors.len()), (24, 2));
+    for motion in motions {
+        let own = &attractors[motion["attractor"].as_u64().expect("an attractor") as usize];
+        let end = own["states"][0]["x"].as_f64().expect("a place");
+        assert!((end.abs() - 1.0).abs() < 1e-6, "{end}");
+    }
+    let picture = output(&[&both[..], &section, &["--format", "svg"]].concat());
+    assert!(picture.contains("Basins of attraction") && picture.contains("attractor 2"));
+    // Without a section there are no attractors, and of a parameter no basins.
+    assert!(!output(&both).contains("Attractors"));
+    let mixed = ["simulate", "x'' + c*x' + x = 0", "--sweep", "c=0.1:0.2:2", "--sweep", "x=1:2:2"];
+    let refused = run(&[&mixed[..], &section, &["--format", "svg"]].concat());
+    let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(message.contains("or basins over two coordinates or velocities"), "{message}");
+}

@@ -219,8 +219,20 @@ fn course(problem: &Problem, asked: &SimulateArguments) -> Result<TrajectoryRequ
                 )
             }
         };
+        // The states of an equation of first order begin without a velocity.
+        let has_velocity = course
+            .rates
+            .states
+            .iter()
+            .any(|state| state.coordinate().name() == name && state.name() != name);
+        let for_a_blow = match has_velocity {
+            true => {
+                format!(" for a release from rest, --from \"{name}=0,{name}'=1\"{at} for a blow")
+            }
+            false => String::new(),
+        };
         return Err(Failure::because(format!(
-            "a motion needs its start{and_values}\n  help: --from {name}=1.5{at} for a release from rest, --from \"{name}=0,{name}'=1\"{at} for a blow"
+            "a motion needs its start{and_values}\n  help: --from {name}=1.5{at}{for_a_blow}"
         )));
     }
     let mut begun: Vec<Symbol> = Vec::new();

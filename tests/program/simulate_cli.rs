@@ -837,7 +837,7 @@ fn a_place_without_digits_is_refused() {
 /// Many starts have attractors in text and document, and a picture of their basins.
 #[test]
 fn starts_in_a_plane_have_basins() {
-    let wells = ["simulate", "x'' + x'/2 - x + x^3 = 0", "--sweep", "x=-1.5:1.5:6"];
+    let wells = ["x'' + x'/2 - x + x^3 = 0", "--sweep", "x=-1.5:1.5:6"];
     let both = [&wells[..], &["--sweep", "x'=-1:1:4", "--until", "80", "--after", "60"]].concat();
     let section = ["--every", "1"];
     let text = output(&[&both[..], &section].concat());
@@ -857,7 +857,7 @@ fn starts_in_a_plane_have_basins() {
     assert!(picture.contains("Basins of attraction") && picture.contains("attractor 2"));
     // Without a section there are no attractors, and of a parameter no basins.
     assert!(!output(&both).contains("Attractors"));
-    let mixed = ["simulate", "x'' + c*x' + x = 0", "--sweep", "c=0.1:0.2:2", "--sweep", "x=1:2:2"];
+    let mixed = ["x'' + c*x' + x = 0", "--sweep", "c=0.1:0.2:2", "--sweep", "x=1:2:2"];
     let refused = run(&[&mixed[..], &section, &["--format", "svg"]].concat());
     let message = String::from_utf8_lossy(&refused.stderr).into_owned();
     assert!(message.contains("or basins over two coordinates or velocities"), "{message}");

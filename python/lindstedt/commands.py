@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from .documents.certificate import DampedCertificateDocument
     from .documents.certificate import LawCertificateDocument
     from .documents.certificate import ModeCertificateDocument
+    from .documents.certificate import OrbitCertificateDocument
     from .documents.certificate_range import CertificateRange
     from .documents.impact_certificate import ImpactCertificate
     from .documents.impact_comparison import ImpactComparison
@@ -172,8 +173,8 @@ def impact(
             exact; all for a table of every law.
         left: The barrier is on the left of xc, and the release at x = A.
         compare: Every method in one table, each at its lowest order that passes.
-        certify: Prove the numbers of the paper's impact, pendulum and barrier of Hertz, and how
-            far each closed form is off.
+        certify: Prove the numbers of the impact of a pendulum and a barrier whose force is a
+            power of the depth, and how far each closed form is off.
         tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
         timeout: Give up after so many seconds.
         at: Values of symbols whose names are options or no words, `{"small": 1}`.
@@ -279,6 +280,7 @@ def response(
     periods: int | None = None,
     wall: Sequence[str] | None = None,
     restitution: Sequence[str] | None = None,
+    event: Sequence[str] | None = None,
     contact: Sequence[str] | None = None,
     tolerance: float | None = None,
     timeout: float | None = None,
@@ -306,6 +308,9 @@ def response(
             < x < 1"); repeatable.
         restitution: The speed after an impact over that before, between 0 and 1: one for all
             walls, or one for each.
+        event: An event: where a condition comes true, states are set ("x < 0: x' = -0.8*x'",
+            "sin(w*t) > 0: x' = x' + p; y = 0"); = in place of < or > counts in both directions;
+            repeatable.
         contact: A wall that gives way, and its law: hertz, hunt-crossley, kelvin-voigt, kelvin-
             voigt-no-pull or step ("x < 1: hunt-crossley K=1e5 restitution=0.8 speed=2");
             repeatable.
@@ -319,7 +324,7 @@ def response(
         Refused: The problem is refused, with the term and a way forward.
         UsageError: An option has a value that it cannot have.
     """
-    return ask("response", problem, {"method": method, "vary": vary, "along": along, "of": of, "order": order, "periods": periods, "wall": wall, "restitution": restitution, "contact": contact, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+    return ask("response", problem, {"method": method, "vary": vary, "along": along, "of": of, "order": order, "periods": periods, "wall": wall, "restitution": restitution, "event": event, "contact": contact, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
 
 def absorber(
@@ -362,12 +367,13 @@ def orbits(
     periods: int | str | None = None,
     vary: Values | None = None,
     along: Values | None = None,
+    certify: bool = False,
     tolerance: float | None = None,
     timeout: float | None = None,
     at: Values | None = None,
     progress: Progress | None = None,
     **values: Value,
-) -> Orbits:
+) -> Orbits | OrbitCertificateDocument:
     """Periodic motions of a linear driven oscillator that hits rigid walls: speed, phase and stability in closed form, each orbit beside a simulation; charts over two parameters.
 
     Args:
@@ -384,6 +390,9 @@ def orbits(
         vary: A parameter, and from where to where: impact speeds along it (F=0.05:1.5).
         along: A second parameter, and from where to where: a chart of where orbits exist and
             are stable.
+        certify: Prove each orbit: that there is exactly one near its numbers, that it touches
+            no wall between its impacts, and whether it is stable; FILE.json of --output is a
+            certificate that `check` reads.
         tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
         timeout: Give up after so many seconds.
         at: Values of symbols whose names are options or no words, `{"small": 1}`.
@@ -394,7 +403,7 @@ def orbits(
         Refused: The problem is refused, with the term and a way forward.
         UsageError: An option has a value that it cannot have.
     """
-    return ask("orbits", problem, {"wall": wall, "restitution": restitution, "impacts": impacts, "periods": periods, "vary": vary, "along": along, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+    return ask("orbits", problem, {"wall": wall, "restitution": restitution, "impacts": impacts, "periods": periods, "vary": vary, "along": along, "certify": certify, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
 
 def shortest(
@@ -719,7 +728,7 @@ def check(
     tolerance: float | None = None,
     timeout: float | None = None,
     progress: Progress | None = None,
-) -> Certificate | DampedCertificateDocument | ModeCertificateDocument | CoupledCertificateDocument | LawCertificateDocument:
+) -> Certificate | DampedCertificateDocument | ModeCertificateDocument | CoupledCertificateDocument | LawCertificateDocument | OrbitCertificateDocument:
     """Check a certificate that `certify` wrote, in exact arithmetic.
 
     Args:
@@ -933,6 +942,7 @@ class EquationCommands:
         periods: int | None = None,
         wall: Sequence[str] | None = None,
         restitution: Sequence[str] | None = None,
+        event: Sequence[str] | None = None,
         contact: Sequence[str] | None = None,
         tolerance: float | None = None,
         timeout: float | None = None,
@@ -958,6 +968,9 @@ class EquationCommands:
                 "-1 < x < 1"); repeatable.
             restitution: The speed after an impact over that before, between 0 and 1: one for
                 all walls, or one for each.
+            event: An event: where a condition comes true, states are set ("x < 0: x' =
+                -0.8*x'", "sin(w*t) > 0: x' = x' + p; y = 0"); = in place of < or > counts in both
+                directions; repeatable.
             contact: A wall that gives way, and its law: hertz, hunt-crossley, kelvin-voigt,
                 kelvin-voigt-no-pull or step ("x < 1: hunt-crossley K=1e5 restitution=0.8 speed=2");
                 repeatable.
@@ -971,7 +984,7 @@ class EquationCommands:
             Refused: The problem is refused, with the term and a way forward.
             UsageError: An option has a value that it cannot have.
         """
-        return ask("response", self.problem, {"method": method, "vary": vary, "along": along, "of": of, "order": order, "periods": periods, "wall": wall, "restitution": restitution, "contact": contact, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+        return ask("response", self.problem, {"method": method, "vary": vary, "along": along, "of": of, "order": order, "periods": periods, "wall": wall, "restitution": restitution, "event": event, "contact": contact, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
     def stability(
         self,

@@ -9,7 +9,7 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "lindstedt/audit/1": ("audit", ("Audit",)),
     "lindstedt/catalog/1": ("catalog", ("Catalog",)),
     "lindstedt/certificate-range/1": ("certificate_range", ("CertificateRange",)),
-    "lindstedt/certificate/1": ("certificate", ("CertificateDocument", "DampedCertificateDocument", "ModeCertificateDocument", "CoupledCertificateDocument", "LawCertificateDocument",)),
+    "lindstedt/certificate/1": ("certificate", ("CertificateDocument", "DampedCertificateDocument", "ModeCertificateDocument", "CoupledCertificateDocument", "LawCertificateDocument", "OrbitCertificateDocument",)),
     "lindstedt/comparison/1": ("comparison", ("Comparison",)),
     "lindstedt/fit/1": ("fit", ("Fit",)),
     "lindstedt/friction/1": ("friction", ("Friction",)),

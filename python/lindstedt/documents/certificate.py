@@ -644,7 +644,152 @@ LawCertificateDocument.FIELDS = (
 LawCertificateDocument.OPTIONAL = frozenset(['mode'])
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class CertificateImpact(Document):
+    """An impact of an orbit.
+
+    Attributes:
+        wall: The number of the wall in `walls`, from 1 on.
+        phase: Omega times the time of the impact, an integer times 2^-bits.
+        speed: The speed relative to the wall just before the impact, an integer times 2^-bits.
+    """
+
+    wall: int
+    phase: str
+    speed: str
+
+
+CertificateImpact.FIELDS = (
+    ("wall", "wall", None),
+    ("phase", "phase", None),
+    ("speed", "speed", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CertificateOrbit(Document):
+    """An orbit, and what is claimed of it.
+
+    Attributes:
+        periods: The periods of the drive in a period of the orbit.
+        impacts: The approximate impacts in a period, in order of time.
+        phase_radius: The phase of each impact is so near.
+        speed_radius: The speed of each impact is so near.
+        isolated_in_phase: No other orbit with impacts on these walls in this order has all phases
+            so near, and all speeds within `isolated_in_speed`.
+        isolated_in_speed: See `isolated_in_phase`.
+        stability: The stability that is claimed.
+    """
+
+    periods: int
+    impacts: tuple[CertificateImpact, ...]
+    phase_radius: str
+    speed_radius: str
+    isolated_in_phase: str
+    isolated_in_speed: str
+    stability: CertificateStability
+
+
+CertificateOrbit.FIELDS = (
+    ("periods", "periods", None),
+    ("impacts", "impacts", several(CertificateImpact.from_json)),
+    ("phase_radius", "phase_radius", None),
+    ("speed_radius", "speed_radius", None),
+    ("isolated_in_phase", "isolated_in_phase", None),
+    ("isolated_in_speed", "isolated_in_speed", None),
+    ("stability", "stability", CertificateStability.from_json),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CertificateWave(Document):
+    """A constant and a wave of the drive, three fractions: `constant + cosine*cos(Omega*t) +
+    sine*sin(Omega*t)`.
+
+    Attributes:
+        constant: The constant.
+        cosine: The factor of the cosine.
+        sine: The factor of the sine.
+    """
+
+    constant: str
+    cosine: str
+    sine: str
+
+
+CertificateWave.FIELDS = (
+    ("constant", "constant", None),
+    ("cosine", "cosine", None),
+    ("sine", "sine", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CertificateWall(Document):
+    """A rigid wall.
+
+    Attributes:
+        side: `above` where the motion is at x < place, `below` where it is at x > place.
+        place: The place.
+        restitution: The coefficient of restitution, a fraction from 0 to 1.
+    """
+
+    side: Literal["above", "below"]
+    place: CertificateWave
+    restitution: str
+
+
+CertificateWall.FIELDS = (
+    ("side", "side", None),
+    ("place", "place", CertificateWave.from_json),
+    ("restitution", "restitution", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class OrbitCertificateDocument(Answer):
+    """Numbers from which periodic orbits of a linear driven oscillator between rigid walls can be
+    proved. All numbers are text: integers, fractions such as `-1/6`, decimals such as
+    `2.5e-33`.
+
+    Attributes:
+        schema: The kind of document.
+        ode: The equation between impacts; `constant`, `cosine` and `sine` are those of `load`.
+        c: The damping, a fraction.
+        k: The stiffness, a fraction.
+        driving_frequency: Omega, a positive fraction.
+        load: The right side of the equation.
+        walls: One wall, or one on each side.
+        bits: `phase` and `speed` of an impact are integers times 2^-bits; at most 224.
+        orbits: The orbits.
+    """
+
+    schema: Literal["lindstedt/certificate/1"]
+    ode: Literal["x''+c*x'+k*x=constant+cosine*cos(Omega*t)+sine*sin(Omega*t)"]
+    c: str
+    k: str
+    driving_frequency: str
+    load: CertificateWave
+    walls: tuple[CertificateWall, ...]
+    bits: int
+    orbits: tuple[CertificateOrbit, ...]
+
+
+OrbitCertificateDocument.FIELDS = (
+    ("schema", "schema", None),
+    ("ode", "ode", None),
+    ("c", "c", None),
+    ("k", "k", None),
+    ("driving_frequency", "driving_frequency", None),
+    ("load", "load", CertificateWave.from_json),
+    ("walls", "walls", several(CertificateWall.from_json)),
+    ("bits", "bits", None),
+    ("orbits", "orbits", several(CertificateOrbit.from_json)),
+)
+OrbitCertificateDocument.CONSTANTS = {'ode': "x''+c*x'+k*x=constant+cosine*cos(Omega*t)+sine*sin(Omega*t)"}
+
+
 #: Numbers from which a motion can be proved, and how far a formula for it is off: a conservative
-#: motion, a limit cycle, a driven motion, or a free or a driven motion of several coordinates; or
-#: how far a frequency law is off on a range.
-Certificate: TypeAlias = CertificateDocument | DampedCertificateDocument | ModeCertificateDocument | CoupledCertificateDocument | LawCertificateDocument
+#: motion, a limit cycle, a driven motion, a free or a driven motion of several coordinates, or
+#: impact orbits; or how far a frequency law is off on a range.
+Certificate: TypeAlias = CertificateDocument | DampedCertificateDocument | ModeCertificateDocument | CoupledCertificateDocument | LawCertificateDocument | OrbitCertificateDocument

@@ -997,6 +997,28 @@ Wall.FIELDS = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class Event(Document):
+    """An event.
+
+    Attributes:
+        both_ways: Whether the event takes place as well where the guard falls through zero.
+        guard: The expression that grows through zero there.
+        set: The states that are set, each with the formula of its new value.
+    """
+
+    both_ways: bool
+    guard: str
+    set: dict[str, str]
+
+
+Event.FIELDS = (
+    ("both_ways", "both_ways", None),
+    ("guard", "guard", None),
+    ("set", "set", dict),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Axis(Document):
     """A parameter and its values.
 

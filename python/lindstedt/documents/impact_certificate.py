@@ -131,15 +131,16 @@ ProvedClosedForm.FIELDS = (
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ImpactCertificate(Answer):
-    """The numbers of an impact between a pendulum and a barrier of Hertz that loses nothing, each
-    enclosed by a proof. Times in units of 1/omega, angles in radians.
+    """The numbers of an impact between a pendulum and a barrier of a power law that loses nothing,
+    each enclosed by a proof. Times in units of 1/omega, angles in radians.
 
     Attributes:
         schema: The kind of document.
         equation: The equation of motion, `... = 0`.
         amplitude: The amplitude: the motion is released from rest at x = -amplitude.
         barrier: The place of the barrier.
-        stiffness: The stiffness of the barrier.
+        stiffness: The stiffness of the barrier, whose force is `stiffness * depth^exponent`.
+        exponent: The exponent of the depth, 3/2 of Hertz's law.
         proved: The enclosed numbers.
         tolerance: The size of the relative error up to which a verdict is `pass`.
         runge_kutta: The relative errors of Runge-Kutta.
@@ -151,6 +152,7 @@ class ImpactCertificate(Answer):
     amplitude: Constant
     barrier: Constant
     stiffness: Constant
+    exponent: Constant
     proved: EnclosedNumberOfPhases
     tolerance: float
     runge_kutta: ErrorBoundsOfPhases
@@ -163,6 +165,7 @@ ImpactCertificate.FIELDS = (
     ("amplitude", "amplitude", Constant.from_json),
     ("barrier", "barrier", Constant.from_json),
     ("stiffness", "stiffness", Constant.from_json),
+    ("exponent", "exponent", Constant.from_json),
     ("proved", "proved", EnclosedNumberOfPhases.from_json),
     ("tolerance", "tolerance", None),
     ("runge_kutta", "runge_kutta", ErrorBoundsOfPhases.from_json),

@@ -7,7 +7,7 @@ from typing import Literal
 
 from .._answer import Answer
 from .._document import Document, several
-from .common import MotionSample, Section, Wall
+from .common import Event, MotionSample, Section, Wall
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -141,28 +141,6 @@ WallsDocument.FIELDS = (
     ("order_matters", "order_matters", None),
 )
 WallsDocument.OPTIONAL = frozenset(['order_matters'])
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Event(Document):
-    """An event.
-
-    Attributes:
-        guard: The expression that grows through zero there.
-        both_ways: Whether the event takes place as well where the guard falls through zero.
-        set: The states that are set, each with the formula of its new value.
-    """
-
-    guard: str
-    both_ways: bool
-    set: dict[str, str]
-
-
-Event.FIELDS = (
-    ("guard", "guard", None),
-    ("both_ways", "both_ways", None),
-    ("set", "set", dict),
-)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -21,6 +21,8 @@ class SweptMotion(Document):
         section: The states on the section; null where none was asked for.
         impacts: The number of impacts on walls; left out without a wall.
         events: The number of events; left out without one.
+        attractor: The attractor on which it settles, counted from 0; left out if it settles on
+            none.
         stopped: Why it ends where it does.
         complete: Whether it was followed as long as asked.
     """
@@ -31,6 +33,7 @@ class SweptMotion(Document):
     section: Section | None
     impacts: int | None
     events: int | None
+    attractor: int | None
     stopped: str
     complete: bool
 
@@ -42,10 +45,30 @@ SweptMotion.FIELDS = (
     ("section", "section", Section.from_json),
     ("impacts", "impacts", None),
     ("events", "events", None),
+    ("attractor", "attractor", None),
     ("stopped", "stopped", None),
     ("complete", "complete", None),
 )
-SweptMotion.OPTIONAL = frozenset(['events', 'impacts'])
+SweptMotion.OPTIONAL = frozenset(['attractor', 'events', 'impacts'])
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Attractor(Document):
+    """A motion that repeats itself on a section, on which others settle.
+
+    Attributes:
+        states: Its states on the section in their order, coordinates and velocities.
+        motions: The number of motions that settle on it.
+    """
+
+    states: tuple[dict[str, float], ...]
+    motions: int
+
+
+Attractor.FIELDS = (
+    ("states", "states", several(dict)),
+    ("motions", "motions", None),
+)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -63,6 +86,8 @@ class MotionSweep(Answer):
         after: From when on extremes and section count.
         varied: What is varied; the last varies fastest.
         motions: The motions, in order.
+        attractors: The attractors on which motions from many starts settle, that of the most
+            motions first; left out where anything but a start is varied, or without a section.
     """
 
     schema: Literal["lindstedt/motion-sweep/1"]
@@ -74,6 +99,7 @@ class MotionSweep(Answer):
     after: float
     varied: tuple[str, ...]
     motions: tuple[SweptMotion, ...]
+    attractors: tuple[Attractor, ...] | None
 
 
 MotionSweep.FIELDS = (
@@ -86,4 +112,6 @@ MotionSweep.FIELDS = (
     ("after", "after", None),
     ("varied", "varied", tuple),
     ("motions", "motions", several(SweptMotion.from_json)),
+    ("attractors", "attractors", several(Attractor.from_json)),
 )
+MotionSweep.OPTIONAL = frozenset(['attractors'])

@@ -7,7 +7,7 @@ from typing import Literal, TypeAlias
 
 from .._answer import Answer
 from .._document import Document, mapped, several
-from .common import Constant, Wall
+from .common import Constant, Event, Wall
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -514,6 +514,9 @@ class Response(Answer):
         walls: The walls; left out without one.
         impacts: The number of impacts in a period at each point of a branch; left out without a
             wall.
+        events: The events, as `--event` takes them; left out without one.
+        event_counts: The number of events in a period at each point of a branch; left out without
+            an event.
         bifurcations: Where branches change.
         equilibria: The equilibria of coupled equations that nothing drives, a branch each. Left
             out where there are none.
@@ -559,6 +562,8 @@ class Response(Answer):
     stuck: tuple[tuple[float, ...], ...]
     walls: tuple[Wall, ...] | None
     impacts: tuple[tuple[int, ...], ...] | None
+    events: tuple[Event, ...] | None
+    event_counts: tuple[tuple[int, ...], ...] | None
     bifurcations: tuple[ResponseBifurcation, ...]
     equilibria: tuple[EquilibriumBranch, ...] | None
     along: str | None
@@ -594,6 +599,8 @@ Response.FIELDS = (
     ("stuck", "stuck", several(tuple)),
     ("walls", "walls", several(Wall.from_json)),
     ("impacts", "impacts", several(tuple)),
+    ("events", "events", several(Event.from_json)),
+    ("event_counts", "event_counts", several(tuple)),
     ("bifurcations", "bifurcations", several(ResponseBifurcation.from_json)),
     ("equilibria", "equilibria", several(EquilibriumBranch.from_json)),
     ("along", "along", None),
@@ -609,4 +616,4 @@ Response.FIELDS = (
     ("sparse", "sparse", several(tuple)),
     ("complete", "complete", None),
 )
-Response.OPTIONAL = frozenset(['along', 'coordinates', 'curves_of_bifurcations', 'equilibria', 'exhausted', 'impacts', 'of', 'ripple', 'sparse', 'stable_motions', 'walls'])
+Response.OPTIONAL = frozenset(['along', 'coordinates', 'curves_of_bifurcations', 'equilibria', 'event_counts', 'events', 'exhausted', 'impacts', 'of', 'ripple', 'sparse', 'stable_motions', 'walls'])

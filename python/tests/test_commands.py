@@ -44,8 +44,16 @@ CALLS = {
     "response": lambda: ls.response(
         "x'' + x'/10 + x + x^3/10 = F*cos(W*t)", vary={"W": (0.8, 1.2)}, F="1/10"
     ),
+    "response with events": lambda: ls.response(
+        "x'' + x'/5 + x = 0", event=["sin(w*t) > 0: x' = x' + 1/2"], vary={"w": (0.9, 1.1)}
+    ),
+    "basins": lambda: ls.simulate(
+        "x'' + x'/2 - x + x^3 = 0",
+        sweep={"x": [-1.5, 0.5, 1.5], "x'": [-1, 1]}, until=80, after=60, every=1,
+    ),
     "absorber": lambda: ls.absorber("tuned", mu="1/20"),
     "orbits": lambda: ls.orbits(EXAMPLES / "orbits" / "driven-beam.toml"),
+    "certified orbit": lambda: ls.orbits(EXAMPLES / "orbits" / "driven-beam.toml", certify=True),
     "shortest": lambda: ls.shortest("pendulum", range={"A": (0, 2.8)}, longest=6, error=0.01),
     "certified law": lambda: ls.shortest(
         "pendulum", range={"A": (0, 2.8)}, longest=6, error=0.01, certificate=True

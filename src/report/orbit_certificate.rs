@@ -104,7 +104,7 @@ fn wave(own: &ExactHarmonic, frequency: &Rational) -> Result<Expr, ExprError> {
     Ok(Expr::sum([constant, &cosine * &phase.cos()?, &sine * &phase.sin()?]))
 }
 
-/// What is proved of an orbit.
+/// The enclosures of an orbit and its stability.
 fn orbit<'a>(number: usize, own: &CertifiedOrbit, several: bool) -> Vec<Block<'a>> {
     let counted = |count: usize, what: &str| match count {
         1 => format!("one {what}"),

@@ -29,7 +29,7 @@ pub struct Attractor {
     pub motions: usize,
 }
 
-/// What becomes of a motion.
+/// The fate of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fate {
     /// It settles on the attractor of this number.

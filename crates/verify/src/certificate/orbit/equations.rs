@@ -102,7 +102,7 @@ pub(super) struct GapEquations {
 pub(super) struct ImpactBalls {
     pub(super) wall: usize,
     pub(super) phase: Ball,
-    /// In the units of the equation.
+    /// The speed, in the units of the equation.
     pub(super) speed: Ball,
 }
 
@@ -119,7 +119,7 @@ pub(super) struct Flight {
 /// Residuals of the equations of an orbit and their derivative by phases and speeds in turn.
 pub(super) struct Linearised {
     pub(super) residual: Vec<Ball>,
-    /// By rows.
+    /// The derivative, by rows.
     pub(super) derivative: Vec<Vec<Ball>>,
 }
 

@@ -63,7 +63,7 @@ pub struct ExactHarmonic {
 }
 
 impl ExactHarmonic {
-    /// The same of each of the three numbers.
+    /// Changes each of the three numbers in the same way.
     fn map(&self, change: impl Fn(&Rational) -> Rational) -> Self {
         let [constant, cosine, sine] = [&self.constant, &self.cosine, &self.sine].map(change);
         Self { constant, cosine, sine }

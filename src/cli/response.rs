@@ -397,7 +397,7 @@ fn refused(error: ResponseError) -> Failure {
             "add a force that depends on time, such as - F*cos(Omega*t), or what excites the motion, such as - mu*(1 - x^2)*x'".to_owned(),
         ),
         ResponseError::NoCycle { parameter, .. } => Some(format!(
-            "it dies out, escapes, or its cycles lie elsewhere: try another range of {parameter}, or follow it: `lindstedt simulate`"
+            "it dies out, escapes, its cycles lie elsewhere, or no coordinate turns between their events: try another range of {parameter}, or follow it: `lindstedt simulate`"
         )),
         ResponseError::NoPeriods(_) => Some("leave out --periods: the period of a self-excited motion is found".to_owned()),
         ResponseError::NotPeriodic(_) => {
@@ -430,8 +430,8 @@ fn refused(error: ResponseError) -> Failure {
         ResponseError::CoupledJump(_) => Some(
             "make one of them smooth: (2/pi)*atan(100*x') for sgn(x')".to_owned(),
         ),
-        ResponseError::EventsWithoutDamping => Some(
-            "`lindstedt simulate` follows one motion, with --wall and --event; with a drive or damping there are branches".to_owned(),
+        ResponseError::WallsWithoutLoss => Some(
+            "`lindstedt simulate` with --wall follows one of them; with a drive, damping or a smaller --restitution there are branches".to_owned(),
         ),
         ResponseError::RestsOnWall => Some(
             "`lindstedt simulate` with --wall follows it to rest and beyond; a larger coefficient of restitution or a stronger drive keeps it moving"

@@ -108,11 +108,11 @@ impl CurveStyle {
     }
     /// The style of the bars of what belongs to no region, this wide.
     pub fn no_region(width: f64) -> Self {
-        Self("#bbbbbb", "none", width)
+        Self("#dddddd", "none", width)
     }
     /// The style of the bars of what lies outside of all regions, this wide.
     pub fn outside(width: f64) -> Self {
-        Self("#333333", "none", width)
+        Self("#888888", "none", width)
     }
     /// One of many curves, which need not be distinguished.
     pub const ONE_OF_MANY: Self = Self("#bbbbbb", "none", 0.7);

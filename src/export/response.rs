@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use super::csv::{cell, quoted};
 use super::figure::{CurveStyle, FigureError, Panel, Points, curve, figure, panel};
-use crate::report::{are_modes, has_energy, listed_quantity};
+use crate::report::{are_modes, event_in_words, has_energy, listed_quantity, wall_in_words};
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::{Equilibrium, ResponseDiagram, SteadyMotion};
 
@@ -104,6 +104,8 @@ struct Coupled {
     columns: String,
     /// The empty cells of a row without amplitudes.
     empty: String,
+    /// Whether each coordinate has a column; that of a single one stands in those of all.
+    are_several: bool,
     /// Whether a second parameter has a column.
     has_second: bool,
 }
@@ -137,12 +139,13 @@ impl Coupled {
             let _ = write!(columns, ",{along}");
             empty.push(',');
         }
-        Self { meaning, columns, empty, has_second: asked.along.is_some() }
+        let are_several = !coordinates.is_empty();
+        Self { meaning, columns, empty, are_several, has_second: asked.along.is_some() }
     }
 
     /// The amplitudes of a motion, each after a comma.
     fn amplitudes(&self, point: &SteadyMotion) -> String {
-        let amplitudes = point.coordinates.iter();
+        let amplitudes = point.coordinates.iter().filter(|_| self.are_several);
         let mut cells: String = amplitudes.map(|motion| format!(",{}", motion.amplitude)).collect();
         if let Some(energy) = point.energy {
             let _ = write!(cells, ",{energy}");
@@ -477,8 +480,14 @@ pub fn picture(response: &ResponseDiagram) -> Result<String, FigureError> {
         Some(oscillator) => format!("{} = 0", oscillator.equation().left),
         None => asked.equations.to_string(),
     };
-    let values = values.iter().map(|value| format!("; {value}")).collect::<String>();
-    let caption = format!("{equations}{values}; harmonics 0 to {}.", response.harmonics);
+    let several = asked.walls.len() > 1;
+    let walls = asked.walls.iter().enumerate();
+    let walls = walls.map(|(index, wall)| wall_in_words(index, wall, several));
+    let several = asked.events.len() > 1;
+    let events = asked.events.iter().enumerate();
+    let events = events.map(|(index, event)| event_in_words(index, event, several));
+    let parts: String = walls.chain(events).chain(values).map(|part| format!("; {part}")).collect();
+    let caption = format!("{equations}{parts}; harmonics 0 to {}.", response.harmonics);
     figure(&panels, &caption)
 }
 

@@ -332,8 +332,16 @@ fn basins_picture(
     let states = &sweep.course.rates.states;
     let place = |name: &Symbol| states.iter().position(|state| state == name).unwrap_or(0);
     let of_attractors = basins.attractors.iter().flat_map(|attractor| &attractor.states);
-    let of_attractors: Points =
-        of_attractors.map(|state| (state[place(across)], state[place(up)])).collect();
+    // States outside of the plane of the starts would stretch it.
+    let within = |index: usize, value: f64| {
+        let values = || sweep.motions.iter().map(|motion| motion.values[index]);
+        (values().fold(f64::INFINITY, f64::min)..=values().fold(f64::NEG_INFINITY, f64::max))
+            .contains(&value)
+    };
+    let of_attractors: Points = of_attractors
+        .map(|state| (state[place(across)], state[place(up)]))
+        .filter(|(x, y)| within(0, *x) && within(1, *y))
+        .collect();
     let drawn: Vec<(String, &Points, CurveStyle)> = bars
         .iter()
         .map(|(fate, points)| {

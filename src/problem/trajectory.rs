@@ -36,7 +36,14 @@ impl Problem {
                 })?;
                 TrajectoryRequest::of_coupled(&coupled)
             }
-            (None, Some(equation)) => TrajectoryRequest::of_equation(&Oscillator::parse(equation)?),
+            (None, Some(equation)) => match Oscillator::parse(equation) {
+                Ok(oscillator) => TrajectoryRequest::of_equation(&oscillator),
+                // An equation of first order is one of coupled equations.
+                Err(error) => match CoupledEquations::parse(equation) {
+                    Ok(first_order) => TrajectoryRequest::of_coupled(&first_order),
+                    Err(_) => return Err(error.into()),
+                },
+            },
             (None, None) => return Err(no_mechanism()),
         };
         if let Some(value) = &self.static_friction {

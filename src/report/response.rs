@@ -279,11 +279,15 @@ fn end_in_words(
             format!("It comes to rest at {place}: beyond, friction bears what drives it.")
         }
         BranchEnd::ImpactAtStart => format!(
-            "At {place} an impact falls on the beginning of a period, where the start of the motion jumps: what goes on beyond is listed as another branch."
+            "At {place} an {} falls on the beginning of a period, where the start of the motion jumps: what goes on beyond is listed as another branch if it was found.",
+            jump_words(response)[0]
         ),
-        BranchEnd::Grazing => format!(
-            "It grazes a wall at {place}: beyond, a period has an impact less or more, and the map of a period has a root there."
-        ),
+        BranchEnd::Grazing => {
+            let [event, place_of_event] = jump_words(response);
+            format!(
+                "It grazes {place_of_event} at {place}: beyond, a period has an {event} less or more, and the map of a period has a root there."
+            )
+        }
         BranchEnd::Lost if response.jumps => format!(
             "It could not be followed beyond {place}: the motion begins to touch a jump of the force there, or the force has no value."
         ),
@@ -305,6 +309,16 @@ fn end_in_words(
             return None;
         }
     })
+}
+
+/// The words for a jump of states, and for the place where it happens.
+fn jump_words(response: &ResponseDiagram) -> [&'static str; 2] {
+    let question = &response.question;
+    match (question.walls.is_empty(), question.events.is_empty()) {
+        (false, true) => ["impact", "a wall"],
+        (true, _) => ["event", "the condition of an event"],
+        (false, false) => ["impact or event", "a wall or the condition of an event"],
+    }
 }
 
 /// The numbers of impacts and of events in a period along a branch.
@@ -466,6 +480,9 @@ fn changes(response: &ResponseDiagram) -> Option<Vec<Block<'static>>> {
         BifurcationKind::NeimarkSacker => "At a Neimark-Sacker point a second frequency comes in.",
         BifurcationKind::Hopf => "At a Hopf point the motion is born from rest.",
         BifurcationKind::Centre => "At a centre motions of every amplitude repeat themselves.",
+        BifurcationKind::Grazing if response.question.walls.is_empty() => {
+            "At a grazing the motion touches the condition of an event: beyond it there is an event more, or one less, in a period."
+        }
         BifurcationKind::Grazing => {
             "At a grazing the motion touches a wall: beyond it there is an impact more, or one less, in a period."
         }

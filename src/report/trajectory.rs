@@ -379,12 +379,12 @@ pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
     let mut last = vec![Block::Note(words)];
     last.extend(course.section.as_ref().map(|section| Block::Note(section_in_words(section))));
     let ended = sweep.motions.iter().filter(|motion| motion.reason != PathEnd::Reached).count();
-    if ended > 0 {
+    let basins = sweep.basins();
+    if ended > 0 && basins.is_none() {
         last.push(Block::Note(format!("{ended} of them end early")));
     }
     /// Largest number of starts that are listed above their attractors.
     const MOST_STARTS: usize = 100;
-    let basins = sweep.basins();
     let are_many = basins.is_some() && sweep.motions.len() > MOST_STARTS;
     let mut sections: Vec<Vec<Block>> = vec![course.equations.iter().map(equation).collect()];
     sections.extend((!are_many).then(|| vec![Block::table(head, rows)]));
@@ -419,13 +419,20 @@ fn attractors(sweep: &MotionSweep, basins: &Basins) -> Vec<Block<'static>> {
             Block::table(head, rows),
         ],
     };
-    for (fate, words) in [
-        (Fate::Unsettled, "do not repeat themselves on the section by the end"),
-        (Fate::Ended, "end early"),
+    for (fate, [one, several]) in [
+        (
+            Fate::Unsettled,
+            [
+                "does not settle on a cycle by the end: a later --until may tell",
+                "do not settle on a cycle by the end: a later --until may tell",
+            ],
+        ),
+        (Fate::Ended, ["ends early", "end early"]),
     ] {
-        let count = basins.count(fate);
-        if count > 0 {
-            blocks.push(Block::Note(format!("{count} motions {words}")));
+        match basins.count(fate) {
+            0 => {}
+            1 => blocks.push(Block::Note(format!("1 motion {one}"))),
+            count => blocks.push(Block::Note(format!("{count} motions {several}"))),
         }
     }
     blocks

@@ -189,7 +189,7 @@ fn clocks_have_their_closed_form() {
     // Without damping there is no cycle but families of motions.
     let free = question("x'' + w^2*x = 0", &[("x < 1", "1")], ("w", [1.0, 2.0]), "");
     let refused = respond(&free).expect_err("a family");
-    assert!(matches!(refused, ResponseError::EventsWithoutDamping), "{refused}");
+    assert!(matches!(refused, ResponseError::WallsWithoutLoss), "{refused}");
 }
 
 /// An event that sets a state past the condition of another one is not followed, and this is said.

@@ -329,8 +329,8 @@ fn attractors_have_as_many_states_as_their_cycles() {
     let states = ["x".into(), "y".into()];
     let logistic = StateEvent::parse("sin(t) > 0: x = r*x*(1 - x)", &states).expect("an event");
     let mut course = TrajectoryRequest::of_coupled(&equations).with_events(vec![logistic]);
-    course.section = every("2*pi");
-    (course.duration, course.after) = (TAU * 200.5, TAU * 150.0);
+    course.section = Some(PoincareSection::Events);
+    (course.duration, course.after) = (TAU * 200.5, TAU * 120.5);
     let grid: Vec<Vec<f64>> = [0.1, 0.35, 0.62, 0.9].map(|x| vec![x]).into();
     for (r, count) in [(2.5, 1), (3.2, 2), (3.5, 4), (3.83, 3)] {
         course.values = [("r".into(), r)].into();

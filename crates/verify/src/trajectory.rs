@@ -874,6 +874,11 @@ impl Trajectory {
         Some(state)
     }
 
+    /// The ends of the stretches between which states jump, or friction begins or ends to hold something.
+    pub(crate) fn piece_ends(&self) -> impl Iterator<Item = f64> {
+        self.pieces.iter().map(TrajectorySegment::end)
+    }
+
     /// Coordinates, then velocities just behind a time, which differ from those of
     /// [`Trajectory::states_at`] at an impact; `None` outside of the motion.
     pub fn states_after(&self, time: f64) -> Option<Vec<f64>> {

@@ -159,14 +159,14 @@ pub enum ResponseError {
     RestsOnWall,
     /// No motion could be followed over a period because events accumulate, or take place at once.
     #[error(
-        "no motion was found whose events are apart: within a period they accumulate, or one sets a state past the condition of another"
+        "no motion was found whose events are apart: within a period they accumulate, or two take place at once"
     )]
     EventsAccumulate,
-    /// Walls or events in equations that nothing drives and nothing damps.
+    /// Walls that take no energy in equations that nothing drives and nothing damps.
     #[error(
-        "branches of motions with impacts or events are followed where something drives or damps the motion between them"
+        "nothing drives the motion and nothing takes its energy, so that there is one for each energy"
     )]
-    EventsWithoutDamping,
+    WallsWithoutLoss,
     /// A bound that is not a wall.
     #[error(transparent)]
     Wall(#[from] WallError),

@@ -1,11 +1,13 @@
 //! The attractors on which many motions settle, by their last states on a section, and the basin of each.
 //!
 //! ```text
-//! period n of a motion:  the least n with y_k = y_(k-n) for its last n states y_k on the section
+//! period n of a motion:  the least n with which |y_k - y_(k-n)| is so small for its last states y_k on the section, and
+//!                        shrinks so fast, that it still has less than a part of that way to go
 //! one attractor:         the same n, and the last n states in the same order from some state on
 //! ```
 //!
-//! States are the same if they differ by less than a thousandth of the extent of all last states. (C. S. Hsu, *Cell-to-Cell
+//! States are the same if they differ by less than a thousandth of the extent of all last states, and what a motion still
+//! has to go is a fifth of that at most. (C. S. Hsu, *Cell-to-Cell
 //! Mapping*, Springer 1987, chapter 1, for basins by simulation.)
 //!
 //! In: the motions of a [sweep](super::sweep) with a section. Out: the attractors, the most frequent first, and on which each
@@ -19,6 +21,9 @@ const MOST_STATES: usize = 16;
 
 /// Difference of two states, in the extent of all last states, below which they are the same.
 const SAME: f64 = 1e-3;
+
+/// Part of this that a motion which has settled may still have to go.
+const SETTLED: f64 = 0.2;
 
 /// A motion that repeats itself on a section, on which others settle.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,8 +70,8 @@ impl Basins {
             }
             let last: Vec<&[f64]> =
                 motion.crossings.iter().rev().map(|crossing| crossing.state.as_slice()).collect();
-            let repeats = |n: &usize| (0..*n).all(|k| is_same(last[k], last[k + n]));
-            let period = (1..=MOST_STATES.min(last.len() / 2)).find(repeats);
+            let has_settled = |n: &usize| way_to_go(&last, *n, &sizes) <= SETTLED * SAME;
+            let period = (1..=MOST_STATES.min(last.len() / 3)).find(has_settled);
             let Some(n) = period else {
                 fates.push(Fate::Unsettled);
                 continue;
@@ -104,10 +109,34 @@ impl Basins {
     }
 }
 
+/// The way that a motion still has to go to a cycle of n states, in the extent of all states, the last state first: its
+/// largest difference in the last third of its states, and the geometric sequence of that and of the one in the third
+/// before; infinite where differences do not shrink.
+fn way_to_go(last: &[&[f64]], n: usize, sizes: &[f64]) -> f64 {
+    /// Difference that counts as none: that of rounding and of the integration.
+    const NONE: f64 = 1e-8;
+    let third = (last.len() - n) / 2;
+    let difference = |from: usize| {
+        let of_state = |k: usize| {
+            let pairs = last[k + from].iter().zip(last[k + from + n]).zip(sizes);
+            pairs.map(|((a, b), size)| (a - b).abs() / size).fold(0.0, f64::max)
+        };
+        (0..third).map(of_state).fold(0.0, f64::max)
+    };
+    let [now, before] = [difference(0), difference(third)];
+    // Of n states apart there are as many differences in a third as fit into it.
+    let count = third.div_ceil(n) as f64;
+    match (now <= NONE, now < before) {
+        (true, _) => 0.0,
+        (false, true) => count * now * now / (before - now),
+        (false, false) => f64::INFINITY,
+    }
+}
+
 /// The extent of the last states of all motions that did not end early, for each state; at least a small part of
 /// what is varied, where a state dies out.
 fn extent(motions: &[SweptMotion]) -> Vec<f64> {
-    const SMALL: f64 = 0.01;
+    const SMALL: f64 = 0.1;
     let starts = motions.iter().flat_map(|motion| &motion.values);
     let least = SMALL * starts.map(|value| value.abs()).fold(0.0, f64::max);
     let complete = || motions.iter().filter(|motion| motion.reason == PathEnd::Reached);

@@ -70,6 +70,24 @@ const MAXIMUM_PANELS: usize = 1000;
 
 static RULE: LazyLock<GaussLegendre> = LazyLock::new(|| GaussLegendre::new(POINTS));
 
+/// Places and weights of the 20-point rule of Gauss and Legendre on an interval, in increasing order.
+///
+/// ```
+/// # use lindstedt_numeric as lindstedt;
+/// use lindstedt::numeric::ode::quadrature::gauss_points;
+/// let cube: f64 = gauss_points(0.0, 2.0).iter().map(|[x, weight]| weight * x.powi(3)).sum();
+/// assert!((cube - 4.0).abs() < 1e-14);
+/// ```
+pub fn gauss_points(from: f64, to: f64) -> Vec<[f64; 2]> {
+    let half = 0.5 * (to - from);
+    let middle = 0.5 * (from + to);
+    let pairs = RULE.as_node_weight_pairs().iter();
+    let mut points: Vec<[f64; 2]> =
+        pairs.map(|(node, weight)| [middle + half * node, half * weight]).collect();
+    points.sort_by(|one, other| one[0].total_cmp(&other[0]));
+    points
+}
+
 /// Integral of `function` from `from` to `to`, and its absolute error estimate.
 ///
 /// `tolerance` is relative to the integral of |f|; below 1e-14 rounding decides and 1e-14 is used.

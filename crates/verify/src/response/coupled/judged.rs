@@ -13,9 +13,10 @@ use num_complex::Complex;
 use super::branches::{Known, OrbitBranch};
 use super::changes::{changes_between, least_squares};
 use super::problem::{CoupledProblem, Kind, Orbit, STEP_LIMIT};
+use super::wave::{PeriodSamples, SAMPLES, Wave};
 use crate::expr::Expr;
 use crate::mechanics::Rates;
-use crate::numeric::harmonics::{Harmonics, Transform};
+use crate::numeric::harmonics::Transform;
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::{
     Bifurcation, Branch, CoordinateMotion, Criticality, Elsewhere, MOST_HARMONICS, ResponseDiagram,
@@ -25,9 +26,6 @@ use crate::symbol::Symbol;
 use crate::system::{Integrator, Path, PathEnd};
 use crate::trajectory::{Trajectory, TrajectoryRequest};
 use crate::verify::Verdict;
-
-/// Number of samples of a period.
-const SAMPLES: usize = 256;
 
 /// Number of harmonics that are kept where none is asked for.
 const HARMONICS: usize = 16;
@@ -76,8 +74,18 @@ impl OrbitPath {
         })
     }
 
+    /// The instants within a time at which states jump, or friction begins or ends to hold something, with the
+    /// states on both sides.
+    pub(super) fn breaks(&self, duration: f64) -> Vec<(f64, [Vec<f64>; 2])> {
+        let Self::Events(motion) = self else { return vec![] };
+        let times = motion.piece_ends().filter(|time| *time > 0.0 && *time < duration);
+        times
+            .filter_map(|time| Some((time, [motion.states_at(time)?, motion.states_after(time)?])))
+            .collect()
+    }
+
     /// Appends the states at times in increasing order to the columns, one for each state.
-    fn sample(&self, times: &[f64], columns: &mut [Vec<f64>]) {
+    pub(super) fn sample(&self, times: &[f64], columns: &mut [Vec<f64>]) {
         match self {
             Self::Series(path) => path.sample(times, &mut vec![], columns),
             Self::Events(motion) => {
@@ -89,12 +97,6 @@ impl OrbitPath {
             }
         }
     }
-}
-
-/// A quantity over a period: samples, and what follows from them.
-struct Wave {
-    harmonics: Vec<[f64; 2]>,
-    peak: f64,
 }
 
 impl CoupledProblem<'_> {
@@ -143,65 +145,6 @@ impl CoupledProblem<'_> {
     /// The highest harmonic that is kept.
     pub(super) fn harmonics(&self) -> usize {
         self.question.harmonics.unwrap_or(HARMONICS).min(MOST_HARMONICS)
-    }
-
-    /// A quantity of the coordinates over a period of a path.
-    fn wave(
-        &self,
-        path: Option<&OrbitPath>,
-        period: f64,
-        samples: &[Vec<f64>],
-        transform: &Transform,
-        quantity: impl Fn(&[f64]) -> f64,
-    ) -> Wave {
-        let n = self.coordinates;
-        let at = |index: usize| -> Vec<f64> { (0..n).map(|k| samples[k][index]).collect() };
-        let values: Vec<f64> = (0..SAMPLES).map(|index| quantity(&at(index))).collect();
-        let Harmonics { cosines, sines } = transform.harmonics(&values, self.harmonics());
-        let pairs = cosines.iter().zip(&sines).enumerate();
-        let harmonics = pairs.map(|(index, (cosine, sine))| match index {
-            0 => [0.5 * cosine, 0.0],
-            _ => [*cosine, *sine],
-        });
-        let step = period / SAMPLES as f64;
-        let value = |time: f64| {
-            let states = path.and_then(|path| path.states_at(time.rem_euclid(period)));
-            states.map_or(f64::NAN, |states| quantity(&states[..n]))
-        };
-        // The highest point near the highest sample, by parabolas through three points; where one has its
-        // vertex lower than a point, as beside a jump of the force at the turn, from the highest of them.
-        let extreme = |sign: f64| {
-            const PARABOLAS: usize = 3;
-            const MOST_TRIALS: usize = 30;
-            let highest = (0..SAMPLES)
-                .max_by(|one, other| (sign * values[*one]).total_cmp(&(sign * values[*other])))
-                .unwrap_or(0);
-            let (mut middle, mut width) = (step * highest as f64, step);
-            let mut best = values[highest];
-            let mut parabolas = 0;
-            for _ in 0..MOST_TRIALS {
-                let [left, right] = [middle - width, middle + width].map(value);
-                let curve = left - 2.0 * best + right;
-                let shift = if curve == 0.0 { 0.0 } else { 0.5 * width * (left - right) / curve };
-                let there = if shift.abs() <= width { value(middle + shift) } else { f64::NAN };
-                if sign * there >= sign * best {
-                    (middle, best, width) = (middle + shift, there, 0.1 * width);
-                    parabolas += 1;
-                    if parabolas == PARABOLAS {
-                        break;
-                    }
-                    continue;
-                }
-                for (side, there) in [(-width, left), (width, right)] {
-                    if sign * there > sign * best {
-                        (middle, best) = (middle + side, there);
-                    }
-                }
-                width *= 0.5;
-            }
-            best
-        };
-        Wave { harmonics: harmonics.collect(), peak: 0.5 * (extreme(1.0) - extreme(-1.0)) }
     }
 
     /// The states of a motion at these times by the integrator that found it, for one that has no
@@ -289,18 +232,14 @@ impl CoupledProblem<'_> {
         let rates = self.in_time.rates_at(start, 0.0, parameter);
         let path = self.by_series(start, period, parameter);
         let multipliers = self.multipliers(orbit);
-        let mut samples = vec![Vec::with_capacity(SAMPLES); n];
-        let times: Vec<f64> =
-            (0..SAMPLES).map(|index| period * index as f64 / SAMPLES as f64).collect();
-        if let Some(path) = &path {
-            path.sample(&times, &mut samples);
-        }
-        let path = path.filter(|_| samples.iter().all(|column| column.len() == SAMPLES));
-        if path.is_none() {
-            samples = self.sampled(start, &times, parameter, scale);
-        }
+        let sampled = path.as_ref().and_then(|path| PeriodSamples::of_path(path, period));
+        let samples = sampled.unwrap_or_else(|| {
+            let times = PeriodSamples::equal_times(period);
+            PeriodSamples::equal(period, self.sampled(start, &times, parameter, scale))
+        });
         let wave = |quantity: &dyn Fn(&[f64]) -> f64| {
-            self.wave(path.as_ref(), period, &samples, transform, quantity)
+            samples
+                .wave(path.as_ref(), self.harmonics(), transform, |states| quantity(&states[..m]))
         };
         let polar = |wave: &Wave| {
             let [cosine, sine] = wave.harmonics.get(1).copied().unwrap_or_default();

@@ -39,6 +39,7 @@ mod problem;
 mod sliding;
 mod starts;
 mod surfaces;
+mod wave;
 
 use super::{ResponseDiagram, ResponseError, ResponseRequest};
 use crate::coupled::CoupledEquations;

@@ -139,8 +139,10 @@ impl<'a> CoupledProblem<'a> {
         let reversible = is_reversible(&rates.right, equations.coordinates.len(), velocities)?;
         // An impact takes energy, or else the motions are not those of a smooth system.
         let undamped = reversible && !question.has_jumps_of_states();
-        if reversible && !undamped && !driven {
-            return Err(ResponseError::EventsWithoutDamping);
+        let takes_nothing = |wall: &Wall| wall.restitution == Expr::one();
+        let are_lossless = question.events.is_empty() && question.walls.iter().all(takes_nothing);
+        if reversible && !undamped && !driven && are_lossless {
+            return Err(ResponseError::WallsWithoutLoss);
         }
         let free = undamped && !driven;
         let (parameter, parameters) = (question.parameter, question.parameters());

@@ -465,7 +465,14 @@ impl<'a> EventRun<'a> {
         }
         for (index, event) in surfaces.events.iter().enumerate() {
             let unseen = run.unseen_gap(index, duration);
+            // Just behind an event through which the motion goes on there is no second one.
+            let has_passed = run.time - run.passed[index] <= UNSEEN * duration;
+            let is_behind = has_passed && run.goes_through(index, duration);
+            let watched = if is_behind { run.time + AT_REST * duration } else { f64::NEG_INFINITY };
             let gap = move |point: &Point<Vec<f64>>| {
+                if point.t < watched {
+                    return -unseen;
+                }
                 let arguments = &mut *memory.borrow_mut();
                 run.set_arguments(point.t, &point.y, arguments);
                 event.gap.call(arguments) + unseen

@@ -56,8 +56,9 @@ impl EventRun<'_> {
         }
     }
 
-    /// Puts the states on an event of which they are a rounding away.
-    fn put_on_event(&mut self, event: usize) {
+    /// Puts the states behind an event of which they are a rounding away: onto the wall that they leave again, or
+    /// so far beyond the guard through which the motion goes on that it is not seen to fall once more.
+    fn put_behind(&mut self, event: usize, duration: f64) {
         let arguments = self.here();
         let map = &self.surfaces.events[event];
         let normal = map.normal.at(&arguments);
@@ -67,28 +68,51 @@ impl EventRun<'_> {
         if square == 0.0 || gap.abs() > AT_REST * self.size_of_gap(event, &arguments) {
             return;
         }
+        let place = match self.goes_through(event, duration) {
+            true => -2.0 * self.unseen_gap(event, duration),
+            false => 0.0,
+        };
         for i in 0..n {
-            self.values[i] -= gap * normal[(0, i)] / (square * self.sizes[i]);
+            self.values[i] -= (gap - place) * normal[(0, i)] / (square * self.sizes[i]);
         }
     }
 
-    /// The level of the gap of an event, with the sign turned, below which it is seen to fall: a rounding
-    /// below zero; of an event that has just taken place, and through whose guard the motion goes on, below
-    /// what the gap is, so that there is no second one.
+    /// The distance below zero at which the gap of an event is seen to have fallen: that of rounding.
     pub(super) fn unseen_gap(&self, event: usize, duration: f64) -> f64 {
         let arguments = self.here();
-        let map = &self.surfaces.events[event];
-        let rate = self.rate_of_gap(event, &arguments);
-        let unseen = UNSEEN * self.size_of_gap(event, &arguments).max(rate.abs() * duration);
-        let has_passed = !map.is_wall && self.time - self.passed[event] <= UNSEEN * duration;
-        match has_passed && rate < 0.0 {
-            true => -map.gap.call(&arguments) - unseen,
-            false => unseen,
+        let size = self.size_of_gap(event, &arguments);
+        // A guard that depends on the time alone has its size from the time.
+        match size > 0.0 {
+            true => UNSEEN * size,
+            false => UNSEEN * self.rate_of_gap(event, &arguments).abs() * duration,
         }
+    }
+
+    /// Whether the motion, a rounding away from the guard of an event, goes through it.
+    pub(super) fn goes_through(&self, event: usize, duration: f64) -> bool {
+        let arguments = self.here();
+        let map = &self.surfaces.events[event];
+        let near = AT_REST / UNSEEN * self.unseen_gap(event, duration);
+        !map.is_wall
+            && map.gap.call(&arguments).abs() <= near
+            && self.rate_of_gap(event, &arguments) < 0.0
+    }
+
+    /// Passes an event, and those that a time of their own puts at the same instant.
+    pub(super) fn pass(&mut self, event: usize, duration: f64) -> Result<(), SlidingStop> {
+        self.pass_one(event, duration)?;
+        for other in 0..self.surfaces.events.len() {
+            let is_of_time = self.size_of_gap(other, &self.here()) == 0.0;
+            let is_new = self.time - self.passed[other] > UNSEEN * duration;
+            if is_of_time && is_new && self.goes_through(other, duration) {
+                self.pass_one(other, duration)?;
+            }
+        }
+        Ok(())
     }
 
     /// Passes an event, such as the impact on a wall, with the saltation matrix of the variations.
-    pub(super) fn pass(&mut self, event: usize, duration: f64) -> Result<(), SlidingStop> {
+    fn pass_one(&mut self, event: usize, duration: f64) -> Result<(), SlidingStop> {
         /// Part of a run below which an event follows the one before at once.
         const AT_ONCE: f64 = 1e-7;
         const MOST_AT_ONCE: usize = 3;
@@ -120,19 +144,24 @@ impl EventRun<'_> {
         for i in 0..n {
             self.values[i] = after[(i, 0)] / self.sizes[i];
         }
-        self.put_on_event(event);
+        self.put_behind(event, duration);
         if !map.is_wall {
             self.check_walls()?;
         }
-        // A jump past the guard of another event would be a second event at once.
+        // A jump past the guard of another event would be a second event at once, and one on the same guard
+        // would be lost.
         let here = self.here();
-        let jumps_past = |index: usize, other: &EventMap| {
-            let least = AT_REST * self.size_of_gap(index, &here);
-            let gap = |arguments: &[f64]| other.gap.call(arguments);
-            index != event && !other.is_wall && gap(&arguments) > least && gap(&here) < -least
+        let is_at_once = |(index, other): (usize, &EventMap)| {
+            let size = self.size_of_gap(index, &arguments);
+            let [before, behind] = [&arguments, &here].map(|at| other.gap.call(at));
+            let falls = |at: &[f64]| self.rate_of_gap(index, at) < 0.0;
+            let jumps_past = !other.is_wall && before > AT_REST * size && behind < -AT_REST * size;
+            let is_met = before.abs() <= AT_REST * size && falls(&arguments);
+            let is_lost = is_met && !(behind > -UNSEEN * size && falls(&here));
+            let are_walls = map.is_wall && other.is_wall;
+            index != event && size > 0.0 && !are_walls && (jumps_past || is_lost)
         };
-        if (self.surfaces.events.iter().enumerate()).any(|(index, other)| jumps_past(index, other))
-        {
+        if self.surfaces.events.iter().enumerate().any(is_at_once) {
             return Err(SlidingStop::EventsAccumulate);
         }
         self.begin()?;

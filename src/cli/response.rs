@@ -136,6 +136,12 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
     let along = arguments.along.as_deref().or(problem.along.as_deref());
     let along = along.map(|text| second_parameter(text, parameter, &equations)).transpose()?;
     let of = arguments.of.as_deref().or(problem.of.as_deref());
+    // What the command line varies has no value of the file.
+    let of_file = match arguments.vary {
+        Some(_) => problem.values_of_motion().map(|values| values.split(&[parameter]).1),
+        None => problem.values_of_motion(),
+    };
+    let values = exact_values(&arguments.at, of_file)?.unwrap_or_default();
     let Supervision { interrupt, progress } = session::supervision();
     let mut question = ResponseRequest {
         of: of.map(|text| quantity(text, &equations)).transpose()?.flatten(),
@@ -143,7 +149,7 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
         equations,
         walls,
         events,
-        values: exact_values(&arguments.at, problem.values_of_motion())?.unwrap_or_default(),
+        values,
         parameter,
         range,
         // Slow equations are held against as many harmonics as it takes.

@@ -112,6 +112,17 @@ fn a_response_has_its_events() {
     assert!(message.contains("--event: motions with impacts or events"), "{message}");
 }
 
+/// What the command line varies needs no value: that of the file is left out.
+#[test]
+fn a_parameter_of_a_file_can_be_varied() {
+    let clock = ["response", "examples/events/clock.toml", "--vary", "p=0.3:0.4"];
+    let text = printed(&clock);
+    assert!(text.contains("p from 0.3 to 0.4") && text.contains("f = 0.05"), "{text}");
+    let refused = run(&[&clock[..], &["--at", "p=0.3"]].concat());
+    let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(message.contains("leave out its value"), "{message}");
+}
+
 /// A bifurcation diagram of a kicked oscillator: a row for each state just before a kick.
 #[test]
 fn a_sweep_takes_events() {

@@ -844,7 +844,7 @@ fn starts_in_a_plane_have_basins() {
     assert!(text.contains("Attractors, with the number of their states on the section"), "{text}");
     let is_half = |line: &&str| line.split_whitespace().skip(1).take(3).eq(["12", "50", "%"]);
     assert_eq!(text.lines().filter(is_half).count(), 2, "{text}");
-    let document = json(&[&both[..], &section, &["--format", "json"]].concat());
+    let document = json(&[&both[..], &section].concat());
     let motions = document["motions"].as_array().expect("motions");
     let attractors = document["attractors"].as_array().expect("attractors");
     assert_eq!((motions.len(), attractors.len()), (24, 2));

@@ -125,13 +125,23 @@ pub(super) fn changes_between(
 /// The orbit between two others at which the number of impacts in a period changes.
 fn grazing_between(orbits: &Orbits, from: &Orbit, to: &Orbit) -> Option<Orbit> {
     const HALVINGS: u32 = 40;
+    // Newton's method may come to another motion, such as rest, elsewhere.
+    let [one, other] = [from.parameter(), to.parameter()];
+    let way = (other - one).abs();
+    let range = one.min(other) - way..=one.max(other) + way;
+    let extent = |orbit: &Orbit| orbit.kept.travel.iter().copied().fold(0.0, f64::max);
+    let least = 0.5 * extent(from).min(extent(to));
+    let is_between = |orbit: &Orbit| range.contains(&orbit.parameter()) && extent(orbit) >= least;
     let (mut low, mut high) = (0.0, 1.0);
     let mut nearest = from.clone();
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
         let orbit = orbits.between(from, to, middle);
         match orbit {
-            Some(orbit) if orbit.kept.encounters.counts() == from.kept.encounters.counts() => {
+            Some(orbit)
+                if orbit.kept.encounters.counts() == from.kept.encounters.counts()
+                    && is_between(&orbit) =>
+            {
                 (low, nearest) = (middle, orbit);
             }
             _ => high = middle,

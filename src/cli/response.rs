@@ -136,7 +136,7 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
     let along = arguments.along.as_deref().or(problem.along.as_deref());
     let along = along.map(|text| second_parameter(text, parameter, &equations)).transpose()?;
     let of = arguments.of.as_deref().or(problem.of.as_deref());
-    // What the command line varies has no value of the file.
+    // A parameter that the command line varies has no value of the file.
     let of_file = match arguments.vary {
         Some(_) => problem.values_of_motion().map(|values| values.split(&[parameter]).1),
         None => problem.values_of_motion(),

@@ -112,7 +112,7 @@ fn a_response_has_its_events() {
     assert!(message.contains("--event: motions with impacts or events"), "{message}");
 }
 
-/// What the command line varies needs no value: that of the file is left out.
+/// A parameter that the command line varies needs no value: that of the file is left out.
 #[test]
 fn a_parameter_of_a_file_can_be_varied() {
     let clock = ["response", "examples/events/clock.toml", "--vary", "p=0.3:0.4"];

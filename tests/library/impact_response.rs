@@ -133,7 +133,32 @@ fn kicks_have_their_closed_form() {
         let [one, other] = point.multipliers.expect("multipliers");
         assert!(((one * other).re - decay * decay).abs() < 1e-7);
         assert_eq!((point.impacts, point.events, point.stable), (0, 1, Some(true)));
+        // The first harmonic of the kicks is a force p w/pi.
+        let w = point.parameter;
+        let amplitude = 0.5 * w / PI / (1.0 - w * w).hypot(0.2 * w);
+        assert!((point.amplitude - amplitude).abs() < 1e-8, "{} {amplitude}", point.amplitude);
     }
+    // The kick at the beginning of a period is not counted again at its end.
+    let request = question("x'' + x'/5 + x = 0", &[], ("p", [0.5, 1.0]), "");
+    let kicked = with_events(&request, &["sin(t) > 0: x' = x' + p"]);
+    for periods in [2, 3] {
+        let found = respond(&ResponseRequest { periods, ..kicked.clone() }).expect("a response");
+        let points = || found.branches.iter().flat_map(|branch| &branch.points);
+        assert!(points().count() > 5 && points().all(|point| point.events == periods));
+        assert!(points().all(|point| point.amplitude < 1e-7), "{periods}");
+        assert_eq!(found.verdict, Verdict::Pass);
+    }
+}
+
+/// A reset that leads away from its condition lets it come true again in the same period: the motion is that of its
+/// own series, three resets a period.
+#[test]
+fn a_reset_can_take_place_again_and_again() {
+    let request = question("x'' + x'/5 + x = F*cos(t)", &[], ("F", [0.5, 0.53]), "");
+    let found = respond(&with_events(&request, &["x > 1/2: x = 0"])).expect("a response");
+    let points = || found.branches.iter().flat_map(|branch| &branch.points);
+    assert!(points().count() > 5 && points().all(|point| point.events == 3));
+    assert!(points().all(|point| point.error.is_some_and(|error| error < 1e-9)));
 }
 
 /// A motion that loses speed at each passage through zero, in either direction: the events are passed, not
@@ -197,6 +222,10 @@ fn clocks_have_their_closed_form() {
 fn events_at_once_are_refused() {
     let request = question("x'' + x'/5 + x = F*cos(t)", &[], ("F", [1.0, 2.0]), "");
     let asked = with_events(&request, &["x > 1: x = 3", "x > 2: x' = 0"]);
+    let refused = respond(&asked).expect_err("two events at once");
+    assert!(matches!(refused, ResponseError::EventsAccumulate), "{refused}");
+    // Two on one condition, of which the second would be lost.
+    let asked = with_events(&request, &["x > 1/10: x' = -x'", "x > 1/10: x' = x'/2"]);
     let refused = respond(&asked).expect_err("two events at once");
     assert!(matches!(refused, ResponseError::EventsAccumulate), "{refused}");
 }

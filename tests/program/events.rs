@@ -107,6 +107,13 @@ fn a_response_has_its_events() {
     assert_eq!(document["events"][0]["set"]["x'"], "1/2 + x'");
     let counts = document["event_counts"][0].as_array().expect("counts");
     assert!(counts.len() > 5 && counts.iter().all(|count| count == 1));
+    let table = printed(&[&kicked[..], &vary, &["--format", "csv"]].concat());
+    let cells: Vec<usize> = table
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .map(|line| line.split(',').count())
+        .collect();
+    assert!(cells.len() > 5 && cells.iter().all(|count| *count == cells[0]), "{table}");
     let refused = run(&[&kicked[..], &vary, &["--along", "c=0.1:0.3"]].concat());
     let message = String::from_utf8_lossy(&refused.stderr).into_owned();
     assert!(message.contains("--event: motions with impacts or events"), "{message}");

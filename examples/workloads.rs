@@ -1,23 +1,27 @@
 //! The work that the fastest programs for perturbation series are measured by, printed line by line
 //! so that theirs can be compared: `workloads W1 40`. W1 Duffing, W2 the pendulum, W3 van der Pol,
-//! W4 three symbolic coefficients; `T` is the time of the calculation alone, in seconds.
+//! W4 three symbolic coefficients, each to an order; W7a, W7b, W7c many motions of an equation of one's
+//! own, free, with a contact, and at every period of a drive. `T` is the time of the calculation alone,
+//! in seconds.
 
 use std::error::Error;
 use std::time::Instant;
 
-use lindstedt::Symbol;
 use lindstedt::exact::{Integer, Integers, Polynomial, Polynomials, Rational, factorial};
+use lindstedt::expr::parse_expression;
 use lindstedt::method::secular::{
     AmplitudeKind, Detuning, ExpansionScope, ForceTerm, Scheme, SecularExpansion, expand_numbers,
     expand_polynomials,
 };
 use lindstedt::series::{FourierSeries, fraction};
 use lindstedt::solution::AmplitudeConvention;
+use lindstedt::trajectory::{PoincareSection, TrajectoryRequest, sweep};
+use lindstedt::{Oscillator, Symbol};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [work, order] = arguments.as_slice() else {
-        return Err("usage: workloads W1|W2|W3|W4 ORDER".into());
+        return Err("usage: workloads W1|W2|W3|W4 ORDER, or W7a|W7b|W7c MOTIONS".into());
     };
     let order: usize = order.parse()?;
     match work.as_str() {
@@ -25,6 +29,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         "W2" => conservative(&sine(order), order),
         "W3" => van_der_pol(order),
         "W4" => symbolic(order),
+        "W7a" => swings("x'' + 2*zeta*x' + sin(x) = 0", 1.5, order),
+        "W7b" => swings("x'' + 2*zeta*x' + sin(x) + 1e4*max(x - 0.3, 0)^1.5 = 0", -1.5, order),
+        "W7c" => driven(order),
         _ => Err(format!("no work {work}").into()),
     }
 }
@@ -122,6 +129,43 @@ fn symbolic(order: usize) -> Result<(), Box<dyn Error>> {
             let [i, j, k] = letters.map(|name| monomial.exponent(Symbol::new(name)));
             println!("W {n} {i} {j} {k} {}", fraction(coefficient, denominator));
         }
+    }
+    Ok(())
+}
+
+/// Follows an equation to t = 50 for dampings from 0.01 to 0.2, as `lindstedt simulate EQUATION --sweep
+/// zeta=0.01:0.2:MOTIONS` does.
+fn swings(equation: &str, start: f64, motions: usize) -> Result<(), Box<dyn Error>> {
+    let mut course = TrajectoryRequest::of_equation(&Oscillator::parse(equation)?);
+    course.begin("x".into(), start)?;
+    course.duration = 50.0;
+    swept(&course, "zeta", [0.01, 0.2], motions)
+}
+
+/// The points of a bifurcation diagram, of two wells with a drive of 0.2 to 0.4 from t = 500 to 800.
+fn driven(motions: usize) -> Result<(), Box<dyn Error>> {
+    let equation = "x'' + 0.3*x' - x + x^3 = F*cos(1.2*t)";
+    let mut course = TrajectoryRequest::of_equation(&Oscillator::parse(equation)?);
+    course.begin("x".into(), 1.0)?;
+    (course.duration, course.after) = (800.0, 500.0);
+    course.section = Some(PoincareSection::Every(parse_expression("2*pi/1.2")?));
+    swept(&course, "F", [0.2, 0.4], motions)
+}
+
+fn swept(
+    course: &TrajectoryRequest,
+    name: &str,
+    [from, to]: [f64; 2],
+    motions: usize,
+) -> Result<(), Box<dyn Error>> {
+    let step = (to - from) / motions.saturating_sub(1).max(1) as f64;
+    let values: Vec<Vec<f64>> =
+        (0..motions).map(|index| vec![from + step * index as f64]).collect();
+    let start = Instant::now();
+    let motions = sweep(course, &[name.into()], &values, || ()).map_err(|(_, error)| error)?;
+    println!("T {:.9}", start.elapsed().as_secs_f64());
+    for motion in motions {
+        println!("R {} {:?} {}", motion.values[0], motion.state, motion.crossings.len());
     }
     Ok(())
 }

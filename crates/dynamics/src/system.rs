@@ -378,6 +378,25 @@ impl Path {
         Some(zeros.into_iter().map(|time| start + time).collect())
     }
 
+    /// Returns the least and the greatest value of a state, given by its index, from `from` on: at both
+    /// ends, and where the slope of its series passes through zero. Returns `None` for Runge-Kutta, which
+    /// has no series.
+    ///
+    /// ```
+    /// # use lindstedt_dynamics as lindstedt;
+    /// use lindstedt::system::{SystemOptions, System};
+    ///
+    /// let wave = System::parse(&[("x", "v"), ("v", "-x")], &[])?;
+    /// let path = wave.solve([0.0, 4.0], &[0.0, 1.0], &[], &SystemOptions::default())?;
+    /// let [least, greatest] = path.range(0, 1.0).expect("a path of series");
+    /// assert!((least - 4_f64.sin()).abs() < 1e-15 && (greatest - 1.0).abs() < 1e-15);
+    /// # Ok::<(), lindstedt::system::SystemError>(())
+    /// ```
+    pub fn range(&self, state: usize, from: f64) -> Option<[f64; 2]> {
+        let PathRepresentation::Taylor { steps, start } = &self.motion else { return None };
+        Some(steps.range([from - start, self.end - start], state))
+    }
+
     /// Samples the states at many times in increasing order: the times that are within the path are
     /// added to `kept`, and the values of the first states there to the columns, one for each
     /// state. This is faster than as many calls of [`Path::states_at`], and gives the same values.

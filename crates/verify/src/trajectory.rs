@@ -803,16 +803,6 @@ impl Trajectory {
         self.pieces.get(place)?.states_at(time)
     }
 
-    /// One coordinate or velocity at a time.
-    fn state_at(&self, time: f64, state: usize) -> Option<f64> {
-        let place = self.pieces.partition_point(|piece| piece.end() < time);
-        let piece = self.pieces.get(place)?;
-        match piece.is_held() {
-            true => piece.states_at(time)?.get(state).copied(),
-            false => piece.path.state_at(time, state),
-        }
-    }
-
     /// The first states at many times, in increasing order.
     fn sample(&self, times: Vec<f64>, count: usize) -> Sampled {
         let mut kept = Vec::with_capacity(times.len());

@@ -62,7 +62,7 @@ pub(super) fn sign_and_roots(series: &[f64], from: f64, to: f64) -> (f64, Vec<(f
         // Of the others most grow or fall throughout, since the linear term outweighs the later ones, and
         // have no more than one.
         _ => {
-            let most = (2.0 * terms.linear > terms.slopes).then_some(1);
+            let most = (2.0 * terms.linear > terms.slopes(series)).then_some(1);
             (sign_at_start(series, from, to), roots_of_at_most(most, series, from, to))
         }
     }
@@ -76,23 +76,85 @@ struct TermSizes {
     linear: f64,
     /// The sum of `|c_k| s^k` for k > 0.
     others: f64,
-    /// The sum of `k |c_k| s^k`.
-    slopes: f64,
+    /// The place.
+    s: f64,
 }
 
 impl TermSizes {
-    /// Sums of even and odd terms side by side, so that few additions wait for others.
     fn new(series: &[f64], s: f64) -> Self {
-        let (mut others, mut slopes) = ([0.0; 2], [0.0; 2]);
-        for (k, coefficient) in series.iter().enumerate().skip(1).rev() {
-            let (parity, size) = (k % 2, coefficient.abs());
-            others[parity] = others[parity] * s * s + size;
-            slopes[parity] = slopes[parity] * s * s + size * k as f64;
+        let [first, second, ..] = *series else {
+            let constant = series.first().map_or(0.0, |constant| constant.abs());
+            return Self { constant, linear: 0.0, others: 0.0, s };
+        };
+        let size = |k: usize| series.get(k + 1).map_or(0.0, |coefficient| coefficient.abs());
+        Self {
+            constant: first.abs(),
+            linear: second.abs() * s,
+            others: s * in_fours(series.len() - 1, s, size),
+            s,
         }
-        let sum = |[even, odd]: [f64; 2]| s * (odd + s * even);
-        let term = |k: usize| series.get(k).map_or(0.0, |coefficient| coefficient.abs());
-        Self { constant: term(0), linear: term(1) * s, others: sum(others), slopes: sum(slopes) }
     }
+
+    /// The sum of `k |c_k| s^k`.
+    fn slopes(&self, series: &[f64]) -> f64 {
+        let size = |k: usize| {
+            series.get(k + 1).map_or(0.0, |coefficient| (k + 1) as f64 * coefficient.abs())
+        };
+        self.s * in_fours(series.len().saturating_sub(1), self.s, size)
+    }
+}
+
+/// `sum_k c_k s^k` of this many terms as four sums side by side, every fourth term in each, so that few
+/// additions wait for others.
+#[inline(always)]
+fn in_fours(count: usize, s: f64, coefficient: impl Fn(usize) -> f64) -> f64 {
+    let square = s * s;
+    let fourth = square * square;
+    let mut sums = [0.0; 4];
+    for four in (0..count.div_ceil(4)).rev() {
+        for (place, sum) in sums.iter_mut().enumerate() {
+            *sum = *sum * fourth + coefficient(4 * four + place);
+        }
+    }
+    (sums[0] + s * sums[1]) + square * (sums[2] + s * sums[3])
+}
+
+/// Extends a range by the values of a polynomial between two places from 0 on: at both of them, and where its slope
+/// passes through zero in between. `slope` is memory for the coefficients of the slope.
+pub(super) fn extend_range(
+    range: &mut [f64; 2],
+    series: &[f64],
+    [from, to]: [f64; 2],
+    slope: &mut Vec<f64>,
+) {
+    /// Units in the last place by which a value may exceed the sum of its terms.
+    const DIGITS: f64 = 8.0;
+    let [constant, linear, ..] = *series else {
+        let value = series.first().copied().unwrap_or(f64::NAN);
+        *range = [range[0].min(value), range[1].max(value)];
+        return;
+    };
+    // The values lie no farther from the straight line through the first two terms than all others reach.
+    let terms = TermSizes::new(series, to);
+    let end = constant + linear * to;
+    let reach =
+        terms.others - terms.linear + DIGITS * f64::EPSILON * (terms.constant + terms.others);
+    // Most series are too far inside of the range to leave it.
+    if constant.min(end) - reach >= range[0] && constant.max(end) + reach <= range[1] {
+        return;
+    }
+    let mut extend = |place: f64| {
+        let value = value(series, place);
+        *range = [range[0].min(value), range[1].max(value)];
+    };
+    [from, to].into_iter().for_each(&mut extend);
+    // A polynomial whose linear term outweighs all later ones grows or falls throughout.
+    if 2.0 * terms.linear > terms.slopes(series) {
+        return;
+    }
+    slope.clear();
+    slope.extend(series.iter().enumerate().skip(1).map(|(k, coefficient)| k as f64 * coefficient));
+    roots(slope, from, to).into_iter().for_each(|(place, _)| extend(place));
 }
 
 /// Returns the roots of a polynomial, of which there are at most so many if that is known.
@@ -115,18 +177,18 @@ fn roots_of_at_most(
             open.extend([(middle, high), (low, middle)]);
         } else if changes > 0 {
             // Beside a zero at either end of an interval the sign is that a little further on.
-            let beside = |place: f64| match place == from || paired_value(series, place) == 0.0 {
+            let beside = |place: f64| match place == from || value_in_fours(series, place) == 0.0 {
                 true if place < to => place + apart(from, to),
                 _ => place,
             };
             let (low, end) = (beside(low), beside(high));
-            let (at_low, at_end) = (paired_value(series, low), paired_value(series, end));
+            let (at_low, at_end) = (value_in_fours(series, low), value_in_fours(series, end));
             let crosses = match at_end == 0.0 {
                 true => at_low != 0.0 && high == to,
                 false => at_low != 0.0 && at_low.signum() != at_end.signum(),
             };
             if crosses && low < high {
-                let root = find_root(|s| paired_value(series, s), low, high);
+                let root = find_root(|s| value_in_fours(series, s), low, high);
                 roots.extend(root.map(|root| (root, at_low < 0.0)));
             }
         }
@@ -134,13 +196,9 @@ fn roots_of_at_most(
     roots
 }
 
-/// The value at `s`, as sums of even and odd terms side by side.
-fn paired_value(series: &[f64], s: f64) -> f64 {
-    let pairs = series.chunks(2).rev();
-    let [even, odd] = pairs.fold([0.0; 2], |[even, odd], pair| {
-        [even * s * s + pair[0], odd * s * s + pair.get(1).copied().unwrap_or(0.0)]
-    });
-    even + s * odd
+/// The value at `s`, as four sums side by side.
+fn value_in_fours(series: &[f64], s: f64) -> f64 {
+    in_fours(series.len(), s, |k| series.get(k).copied().unwrap_or(0.0))
 }
 
 /// Returns the number of sign changes of the Bernstein coefficients on an interval: with
@@ -275,5 +333,35 @@ mod tests {
             assert!((place - expected).abs() < 1e-14, "{place} {expected}");
             assert_eq!(*rising, k % 2 == 0);
         }
+    }
+
+    /// Chebyshev's polynomial of degree 9 is `cos(9 arccos s)`: between two places it has its values there,
+    /// and 1 or -1 if a multiple of pi lies between.
+    #[test]
+    fn a_range_holds_both_ends_and_every_turn_between() {
+        let chebyshev = [0.0, 9.0, 0.0, -120.0, 0.0, 432.0, 0.0, -576.0, 0.0, 256.0];
+        let angle = |s: f64| 9.0 * s.acos();
+        let mut slope = vec![];
+        for [from, to] in [[0.0, 1.0], [0.0, 0.1], [0.2, 0.5], [0.3, 0.31], [0.9, 1.0], [0.5, 0.5]]
+        {
+            let mut expected = [angle(from).cos(), angle(to).cos()];
+            expected.sort_by(f64::total_cmp);
+            let turns = (angle(to) / std::f64::consts::PI).ceil() as i32
+                ..=(angle(from) / std::f64::consts::PI).floor() as i32;
+            for turn in turns {
+                expected[usize::from(turn % 2 == 0)] = if turn % 2 == 0 { 1.0 } else { -1.0 };
+            }
+            let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+            extend_range(&mut range, &chebyshev, [from, to], &mut slope);
+            let apart = |index: usize| (range[index] - expected[index]).abs();
+            assert!(apart(0) < 1e-13 && apart(1) < 1e-13, "{from} {to}: {range:?} {expected:?}");
+            // What lies inside is no new value.
+            let mut wider = [-2.0, 2.0];
+            extend_range(&mut wider, &chebyshev, [from, to], &mut slope);
+            assert_eq!(wider, [-2.0, 2.0]);
+        }
+        let mut range = [0.0, 1.0];
+        extend_range(&mut range, &[3.0], [0.0, 1.0], &mut slope);
+        assert_eq!(range, [0.0, 3.0]);
     }
 }

@@ -116,12 +116,12 @@ impl Allowance {
                 }
             }
             for lane in 0..L {
-                let bounds = longest[lane] > f64::NEG_INFINITY && longest[lane] < shortest[lane];
+                let bounds = (longest[lane] > f64::NEG_INFINITY) & (longest[lane] < shortest[lane]);
                 shortest[lane] = if bounds { longest[lane] } else { shortest[lane] };
             }
         }
         for lane in 0..L {
-            let bounds = sum[lane].is_finite() && shortest[lane] < least[lane];
+            let bounds = sum[lane].is_finite() & (shortest[lane] < least[lane]);
             least[lane] = if bounds { shortest[lane] } else { least[lane] };
             total[lane] += sum[lane];
         }

@@ -11,7 +11,7 @@
 use crate::numeric::ode::root::find_root;
 
 use super::expansion::SystemSeries;
-use super::polynomial::{sign_and_roots, value, values};
+use super::polynomial::{extend_range, sign_and_roots, value, values};
 use super::spare_memory::{SpareMemory, SparingList};
 
 /// The steps of a path.
@@ -221,6 +221,23 @@ impl TaylorSteps {
         zeros
     }
 
+    /// The least and the greatest value of a state from one time until another.
+    pub(super) fn range(&self, [from, end]: [f64; 2], state: usize) -> [f64; 2] {
+        let first = self.step_at(from).unwrap_or(0);
+        let steps = if state < self.states { first..self.steps.len() } else { 0..0 };
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        let mut slope = Vec::new();
+        let mut reader = StepReader::new(self);
+        for step in steps {
+            let is_last = step + 1 == self.steps.len();
+            let own = reader.series(step);
+            let here = if from <= own.step.start { 0.0 } else { own.place(from) };
+            let there = if is_last { own.place(end) } else { own.step.length };
+            extend_range(&mut range, own.state(state), [here, there], &mut slope);
+        }
+        range
+    }
+
     /// Appends the values of the first states, a column for each, at times since the start in
     /// increasing order.
     pub(super) fn sample(&self, mut times: &[f64], columns: &mut [Vec<f64>]) {
@@ -407,6 +424,15 @@ mod tests {
                 (kept, columns)
             });
             assert_eq!(one, other);
+            // The range of x is that of its values at the zeros of its velocity and at both ends.
+            let turns = short.zeros(1, 5.0).expect("series");
+            let values =
+                turns.iter().chain([&5.0, &60.0]).filter_map(|time| short.state_at(*time, 0));
+            let [least, greatest] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |range, x| {
+                [range[0].min(x), range[1].max(x)]
+            });
+            let range = short.range(0, 5.0).expect("series");
+            assert!((range[0] - least).abs() < 1e-14 && (range[1] - greatest).abs() < 1e-14);
             let [one, other] = [&short, &long].map(|path| path.zeros(1, 5.0).expect("series"));
             assert!(one.len() > 10);
             assert_eq!(one, other[..one.len()]);

@@ -184,6 +184,8 @@ pub(super) struct TaylorRun<'a> {
     root_signs: Vec<f64>,
     /// The recurrences for these signs.
     expansion: SystemSeries,
+    /// The recurrences for other signs, which the motion has left.
+    left: Vec<(Vec<f64>, SystemSeries)>,
     start: f64,
     end: f64,
     duration: f64,
@@ -303,6 +305,7 @@ impl<'a> TaylorRun<'a> {
             expansions,
             root_signs,
             expansion,
+            left: vec![],
         })
     }
 
@@ -525,11 +528,14 @@ impl<'a> TaylorRun<'a> {
 
     /// Goes over to the other side of a root. Returns the reason if the run ends there.
     fn pass_root(&mut self, passed: usize) -> Option<PathEnd> {
+        let before = self.root_signs.clone();
         self.root_signs[passed] *= -1.0;
-        let Some(mut next) = self.expansions.on_side(self.system, self.events, &self.root_signs)
-        else {
-            return Some(PathEnd::Singular);
+        let known = self.left.iter().position(|(signs, _)| *signs == self.root_signs);
+        let next = match known {
+            Some(known) => Some(self.left.swap_remove(known).1),
+            None => self.expansions.on_side(self.system, self.events, &self.root_signs),
         };
+        let Some(mut next) = next else { return Some(PathEnd::Singular) };
         let (states, variables) = self.values.split_at(self.system.state.len());
         let now = self.start + self.time;
         let variable = |root: &usize| {
@@ -546,7 +552,8 @@ impl<'a> TaylorRun<'a> {
             next.begin(now, &values);
         }
         next.take_root_sides(&self.root_signs);
-        (self.values, self.expansion) = (values, next);
+        self.values = values;
+        self.left.push((before, std::mem::replace(&mut self.expansion, next)));
         None
     }
 

@@ -53,13 +53,14 @@ mod rational_function;
 mod rounding;
 mod typed;
 
+use std::collections::BTreeSet;
 use std::collections::hash_map::DefaultHasher;
-use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fmt;
 use std::hash::{Hash, Hasher};
 use std::sync::{Arc, LazyLock, OnceLock};
 
 use num_traits::{One, Signed, Zero};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::exact::rational::Rational;
 use crate::symbol::Symbol;
@@ -382,7 +383,7 @@ impl Expr {
         &self,
         mut step: impl FnMut(&Self, &[T]) -> Result<T, E>,
     ) -> Result<T, E> {
-        let mut done: HashMap<*const ExprData, T> = HashMap::new();
+        let mut done: FxHashMap<*const ExprData, T> = FxHashMap::default();
         let mut open = vec![(self, false)];
         let mut values = Vec::new();
         while let Some((expr, children_done)) = open.pop() {
@@ -407,7 +408,7 @@ impl Expr {
 
     /// Returns every node, parents before children; a shared node comes once.
     pub fn unique_nodes(&self) -> impl Iterator<Item = &Self> {
-        let mut seen = HashSet::new();
+        let mut seen = FxHashSet::default();
         let mut open = vec![self];
         std::iter::from_fn(move || {
             loop {
@@ -667,7 +668,7 @@ mod tests {
         let x = Expr::symbol("x");
         let square = &x * &x;
         assert_eq!(square, x.integer_power(2).unwrap());
-        let mut set = HashSet::from([square]);
+        let mut set = std::collections::HashSet::from([square]);
         assert!(!set.insert(Expr::power(&x, &Expr::from(2)).unwrap()));
         assert_ne!(x, Expr::symbol("X"));
     }

@@ -23,6 +23,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
+use aligned_vec::{AVec, ConstAlign};
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::symbol::Symbol;
@@ -222,12 +223,16 @@ impl Program {
     }
 }
 
+/// Bytes of a line of the processor's cache: eight motions side by side have one for each coefficient, and
+/// none is read from two.
+const CACHE_LINE: usize = 64;
+
 /// The series of a system of expressions along `L` motions.
 #[derive(Clone, Debug)]
 pub struct Tape<const L: usize = 1> {
     program: Arc<Program>,
     /// The coefficients, place by place.
-    series: Vec<[f64; L]>,
+    series: AVec<[f64; L], ConstAlign<CACHE_LINE>>,
     /// The sign of each corner's argument that the formulas assume.
     sides: Vec<[f64; L]>,
 }
@@ -235,7 +240,10 @@ pub struct Tape<const L: usize = 1> {
 impl Tape {
     /// A tape for a program, on which the variables are zero.
     pub(super) fn new(program: Program) -> Self {
-        let mut series = vec![[0.0]; program.length * program.size()];
+        let mut series = AVec::from_iter(
+            CACHE_LINE,
+            std::iter::repeat_n([0.0], program.length * program.size()),
+        );
         for (coefficients, value) in series.chunks_mut(program.length).zip(&program.values) {
             coefficients[0] = [*value];
         }
@@ -316,7 +324,7 @@ impl Tape {
     pub fn side_by_side<const L: usize>(&self) -> Tape<L> {
         Tape {
             program: self.program.clone(),
-            series: self.series.iter().map(|[value]| [*value; L]).collect(),
+            series: AVec::from_iter(CACHE_LINE, self.series.iter().map(|[value]| [*value; L])),
             sides: self.sides.iter().map(|[side]| [*side; L]).collect(),
         }
     }
@@ -523,6 +531,7 @@ fn compute<const L: usize>(
             }
             sum
         }
+        Operation::Multiply(a, b, usize::MAX) if a == b => square(row(*a), n),
         Operation::Multiply(a, b, degree) => products(row(*a), row(*b), 0..n.min(*degree) + 1, n),
         Operation::Divide(a, b, degree) => {
             let known = products(row(*b), row(place), 1..n.min(*degree) + 1, n);
@@ -604,8 +613,7 @@ fn compute<const L: usize>(
     series[place * length + n] = coefficient;
 }
 
-/// `sum_k a_k b_(n-k)` over these orders, as two independent sums of even and odd k, so that one
-/// addition need not wait for the other.
+/// `sum_k a_k b_(n-k)` over these orders.
 #[inline(always)]
 fn products<const L: usize>(
     a: &[[f64; L]],
@@ -613,56 +621,85 @@ fn products<const L: usize>(
     orders: Range<usize>,
     n: usize,
 ) -> [f64; L] {
-    if orders.is_empty() {
-        return [0.0; L];
-    }
-    let (a, b) = (&a[orders.clone()], &b[n + 1 - orders.end..=n - orders.start]);
-    let (mut even, mut odd) = ([0.0; L], [0.0; L]);
-    let (pairs, backwards) = (a.chunks_exact(2), b.rchunks_exact(2));
-    let last = pairs.remainder().iter().zip(backwards.remainder());
-    for (a, b) in pairs.zip(backwards) {
-        for lane in 0..L {
-            even[lane] += a[0][lane] * b[1][lane];
-            odd[lane] += a[1][lane] * b[0][lane];
-        }
-    }
-    for (a, b) in last {
-        for lane in 0..L {
-            even[lane] += a[lane] * b[lane];
-        }
-    }
-    per_lane(|lane| even[lane] + odd[lane])
+    let [sum] = products_with(a, [b], orders, n);
+    sum
 }
 
-/// Computes [`products`] of one series with two others.
+/// Computes [`products`] of one series with several others.
+///
+/// The terms at both ends have the newest coefficients and are added last: the sum of the others need
+/// not wait until these are known.
 #[inline(always)]
-fn products_with<const L: usize>(
+fn products_with<const L: usize, const M: usize>(
     a: &[[f64; L]],
-    [b, c]: [&[[f64; L]]; 2],
+    others: [&[[f64; L]]; M],
     orders: Range<usize>,
     n: usize,
-) -> [[f64; L]; 2] {
+) -> [[f64; L]; M] {
     if orders.is_empty() {
-        return [[0.0; L]; 2];
+        return [[0.0; L]; M];
     }
     let a = &a[orders.clone()];
-    let [b, c] = [b, c].map(|other| &other[n + 1 - orders.end..=n - orders.start]);
-    let (mut even, mut odd) = ([[0.0; L]; 2], [[0.0; L]; 2]);
-    let (pairs, [of_b, of_c]) = (a.chunks_exact(2), [b, c].map(|other| other.rchunks_exact(2)));
-    let last = pairs.remainder().iter().zip(of_b.remainder().iter().zip(of_c.remainder()));
-    for (a, (b, c)) in pairs.zip(of_b.zip(of_c)) {
-        for lane in 0..L {
-            even[0][lane] += a[0][lane] * b[1][lane];
-            odd[0][lane] += a[1][lane] * b[0][lane];
-            even[1][lane] += a[0][lane] * c[1][lane];
-            odd[1][lane] += a[1][lane] * c[0][lane];
+    let others = others.map(|other| &other[n + 1 - orders.end..=n - orders.start]);
+    let last = a.len() - 1;
+    if last == 0 {
+        return others.map(|b| per_lane(|lane| a[0][lane] * b[0][lane]));
+    }
+    let inner = inner_products(&a[1..last], others.map(|b| &b[1..last]));
+    let mut sums = [[0.0; L]; M];
+    for ((sum, inner), b) in sums.iter_mut().zip(inner).zip(others) {
+        *sum = per_lane(|lane| {
+            inner[lane] + (a[0][lane] * b[last][lane] + a[last][lane] * b[0][lane])
+        });
+    }
+    sums
+}
+
+/// `sum_k a_k b_(n-k) ` of lists of the same length with others, each as two independent sums of even
+/// and odd k, so that one addition need not wait for the other.
+#[inline(always)]
+fn inner_products<const L: usize, const M: usize>(
+    a: &[[f64; L]],
+    others: [&[[f64; L]]; M],
+) -> [[f64; L]; M] {
+    let (mut even, mut odd) = ([[0.0; L]; M], [[0.0; L]; M]);
+    let (pairs, mut backwards) = (a.chunks_exact(2), others.map(|b| b.rchunks_exact(2)));
+    for a in pairs.clone() {
+        for (index, b) in backwards.iter_mut().enumerate() {
+            let Some(b) = b.next() else { continue };
+            for lane in 0..L {
+                even[index][lane] += a[0][lane] * b[1][lane];
+                odd[index][lane] += a[1][lane] * b[0][lane];
+            }
         }
     }
-    for (a, (b, c)) in last {
-        for lane in 0..L {
-            even[0][lane] += a[lane] * b[lane];
-            even[1][lane] += a[lane] * c[lane];
+    if let [a] = pairs.remainder() {
+        for (even, b) in even.iter_mut().zip(others) {
+            for lane in 0..L {
+                even[lane] += a[lane] * b[0][lane];
+            }
         }
     }
-    [per_lane(|lane| even[0][lane] + odd[0][lane]), per_lane(|lane| even[1][lane] + odd[1][lane])]
+    let mut sums = [[0.0; L]; M];
+    for (sum, (even, odd)) in sums.iter_mut().zip(even.iter().zip(&odd)) {
+        *sum = per_lane(|lane| even[lane] + odd[lane]);
+    }
+    sums
+}
+
+/// `sum_(k=0..n) a_k a_(n-k)`, each product once.
+#[inline(always)]
+fn square<const L: usize>(a: &[[f64; L]], n: usize) -> [f64; L] {
+    let half = n.div_ceil(2);
+    let twice = match half {
+        0 => [0.0; L],
+        _ => {
+            let [inner] = inner_products(&a[1..half], [&a[n + 1 - half..n]]);
+            per_lane(|lane| 2.0 * (inner[lane] + a[0][lane] * a[n][lane]))
+        }
+    };
+    match n % 2 {
+        0 => per_lane(|lane| twice[lane] + a[n / 2][lane] * a[n / 2][lane]),
+        _ => twice,
+    }
 }

@@ -94,14 +94,8 @@ pub(super) fn places_of_rest(driven: &Driven, parameter: f64, size: f64) -> Vec<
     const CELLS: i32 = 400;
     const REACH: f64 = 3.0;
     const MOST: usize = 3;
-    let mean_force = |x: f64| {
-        const PHASES: u32 = 16;
-        let force = |phase: u32| {
-            let theta = std::f64::consts::TAU * f64::from(phase) / f64::from(PHASES);
-            driven.force(&[x, 0.0, theta * driven.periods as f64, parameter])
-        };
-        (0..PHASES).map(force).sum::<f64>() / f64::from(PHASES)
-    };
+    const PHASES: u32 = 16;
+    let mean_force = driven.mean_force(parameter, PHASES);
     // The grid is shifted by half a cell, so that zero lies inside a cell.
     let place = |cell: i32| REACH * size * (f64::from(cell) + 0.5) / f64::from(CELLS);
     let forces: Vec<f64> = (-CELLS..=CELLS).map(|cell| mean_force(place(cell))).collect();
@@ -110,7 +104,7 @@ pub(super) fn places_of_rest(driven: &Driven, parameter: f64, size: f64) -> Vec<
         .filter(|(_, pair)| pair[0] < 0.0 && pair[1] > 0.0)
         .map(|(cell, _)| cell)
         .filter_map(|cell| {
-            crate::numeric::ode::root::find_root(mean_force, place(cell), place(cell + 1)).ok()
+            crate::numeric::ode::root::find_root(&mean_force, place(cell), place(cell + 1)).ok()
         })
         .collect();
     found.sort_by(|one, other| one.abs().total_cmp(&other.abs()).then(other.total_cmp(one)));

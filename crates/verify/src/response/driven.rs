@@ -50,6 +50,8 @@ pub struct Driven {
     base: [CompiledFunction; 2],
     /// Whether the force is even in the velocity.
     pub undamped: bool,
+    /// Whether the force is the sum of one that does not depend on the phase and one of the phase alone.
+    drive_is_added: bool,
     /// The expressions that change their signs at the corners of f(x, x', t; p).
     corners: Vec<CompiledFunction>,
     /// Whether the force has no corner or jump: no `abs`, `sgn`, `H`, `max` or `min`.
@@ -309,11 +311,14 @@ impl Driven {
         let [by_position, by_velocity, by_parameter] =
             [slope(position)?, slope(velocity)?, slope(parameter)?];
         let with_slopes = [&force, &by_position, &by_velocity, &by_parameter];
+        let drive_is_added =
+            lines_are_empty && !by_position.contains(phase) && !by_velocity.contains(phase);
         let undamped = oscillator
             .parts()
             .is_ok_and(|parts| parts.damping.is_zero() && !parts.forcing.contains(velocity));
         Ok(Self {
             with_slopes: CompiledFunctions::new(with_slopes, &arguments)?,
+            drive_is_added,
             force: compiled(&force)?,
             jumps: lines
                 .into_iter()
@@ -425,6 +430,23 @@ impl Driven {
     /// Its derivatives by position, velocity and parameter, the phase being fixed.
     pub fn slopes(&self, at: &[f64; 4]) -> [f64; 3] {
         self.force_with_slopes(at).1
+    }
+
+    /// The force on a body at rest, as a function of its place, on average over this many phases of the
+    /// drive: one evaluation a place if the drive does not depend on it.
+    pub(super) fn mean_force(&self, parameter: f64, phases: u32) -> impl Fn(f64) -> f64 {
+        let at = move |x: f64, phase: u32| {
+            let part = (f64::from(phase) + 0.5) / f64::from(phases);
+            self.force(&[x, 0.0, std::f64::consts::TAU * part * self.periods as f64, parameter])
+        };
+        let mean =
+            move |x: f64| (0..phases).map(|phase| at(x, phase)).sum::<f64>() / f64::from(phases);
+        let drive =
+            self.drive_is_added.then(|| mean(0.0) - at(0.0, 0)).filter(|drive| drive.is_finite());
+        move |x: f64| match drive {
+            Some(drive) => at(x, 0) + drive,
+            None => mean(x),
+        }
     }
 
     /// f, and its derivatives by position, velocity and parameter, the phase being fixed.

@@ -32,15 +32,9 @@ fn swing_speed(driven: &Driven, parameter: f64, size: f64) -> f64 {
     const PLACES: u32 = 32;
     const PHASES: u32 = 8;
     let step = 2.0 * size / f64::from(PLACES);
-    let mean = |place: u32| {
-        let x = f64::from(place) * step - size;
-        let force = |phase: u32| {
-            let part = (f64::from(phase) + 0.5) / f64::from(PHASES);
-            driven.force(&[x, 0.0, TAU * part * driven.periods as f64, parameter])
-        };
-        (0..PHASES).map(force).sum::<f64>() / f64::from(PHASES)
-    };
-    let forces: Vec<f64> = (0..=PLACES).map(mean).collect();
+    let mean_force = driven.mean_force(parameter, PHASES);
+    let forces: Vec<f64> =
+        (0..=PLACES).map(|place| mean_force(f64::from(place) * step - size)).collect();
     let (mut potential, mut least, mut greatest) = (0.0, 0.0, 0.0);
     for pair in forces.windows(2) {
         potential += 0.5 * (pair[0] + pair[1]) * step;

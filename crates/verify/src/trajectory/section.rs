@@ -208,55 +208,50 @@ impl Trajectory {
         heights.windows(3).filter_map(touch).collect()
     }
 
-    /// The least and the greatest value of each coordinate from the time `after` of the course on:
-    /// at the ends, and where its velocity passes through zero.
+    /// The least and the greatest value of each coordinate from the time `after` of the course on.
     pub fn extremes(&self) -> Vec<[f64; 2]> {
-        let (from, end) = (self.course.after.min(self.end()), self.end());
+        let from = self.course.after.min(self.end());
         let count = self.course.coordinates.len();
         let of_coordinate = |index: usize| {
-            let mut times = vec![from, end];
-            let mut behind = Vec::new();
-            for piece in self.pieces.iter().filter(|piece| piece.end() >= from) {
-                times.extend(piece.turning_times(count + index, from.max(piece.from)));
-                // At an impact or event a coordinate may turn back with a velocity on both sides, or jump.
-                if !(self.course.walls.is_empty() && self.course.events.is_empty()) {
-                    times.push(piece.end());
-                    let begins = from.max(piece.from);
-                    behind.extend(piece.states_at(begins).map(|states| states[index]));
-                }
-            }
-            let values = times.into_iter().filter_map(|time| self.state_at(time, index));
-            values
-                .chain(behind)
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], value| {
-                    [least.min(value), greatest.max(value)]
-                })
+            let pieces = self.pieces.iter().filter(|piece| piece.end() >= from);
+            let ranges =
+                pieces.map(|piece| piece.range([index, count + index], from.max(piece.from)));
+            ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], range| {
+                [least.min(range[0]), greatest.max(range[1])]
+            })
         };
         (0..count).map(of_coordinate).collect()
     }
 }
 
 impl TrajectorySegment {
-    /// The times from `from` on at which a velocity passes through zero: where there are no series
-    /// of it, those between two of many values with opposite signs.
-    fn turning_times(&self, velocity: usize, from: f64) -> Vec<f64> {
+    /// The least and the greatest value of a coordinate from a time on, at both ends and where it turns.
+    /// Where there is no series of it, it turns between two of many values with velocities of opposite
+    /// signs.
+    fn range(&self, [coordinate, velocity]: [usize; 2], from: f64) -> [f64; 2] {
         /// Number of values per step of the integrator.
         const VALUES: usize = 8;
         if !self.is_held()
-            && let Some(zeros) = self.path.zeros(velocity, from)
+            && let Some(range) = self.path.range(coordinate, from)
         {
-            return zeros;
+            return range;
         }
-        let value = |time: f64| self.states_at(time).map_or(f64::NAN, |states| states[velocity]);
+        let state = |time: f64, index: usize| {
+            self.states_at(time).and_then(|states| states.get(index).copied()).unwrap_or(f64::NAN)
+        };
+        let speed = |time: f64| state(time, velocity);
         let count = VALUES * self.path.step_count().max(1);
         let time = |index: usize| from + (self.end() - from) * index as f64 / count as f64;
-        let mut turning = Vec::new();
+        let mut turning = vec![from, self.end()];
         for index in 0..count {
             let [before, behind] = [time(index), time(index + 1)];
-            if value(before) * value(behind) <= 0.0 {
-                turning.extend(find_root(value, before, behind));
+            if speed(before) * speed(behind) <= 0.0 {
+                turning.extend(find_root(speed, before, behind));
             }
         }
-        turning
+        let values = turning.into_iter().map(|time| state(time, coordinate));
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], value| {
+            [least.min(value), greatest.max(value)]
+        })
     }
 }

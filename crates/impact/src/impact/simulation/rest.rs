@@ -129,13 +129,15 @@ impl Simulation {
     /// The points of the envelope of the amplitude in order, the first swing at the start: (t, |x|)
     /// are what is joined by straight lines of log|x|, with x counted from the place of rest.
     pub fn envelope(&self) -> Vec<TurningPoint> {
-        self.envelope_from(self.first_swing())
+        let mut envelope = Vec::with_capacity(self.turns.len() + 2);
+        self.each_of_envelope(|turn| envelope.push(turn));
+        envelope
     }
 
-    /// The envelope from this first swing; only the points that are known to belong to it.
-    fn envelope_from(&self, amplitude: f64) -> Vec<TurningPoint> {
-        let mut envelope = Vec::with_capacity(self.turns.len() + 2);
-        envelope.push(TurningPoint { t: 0.0, x: amplitude });
+    /// Goes through the points of the envelope in order, those that are known to belong to it.
+    fn each_of_envelope(&self, mut visit: impl FnMut(TurningPoint)) {
+        let mut newest = TurningPoint { t: 0.0, x: self.first_swing() };
+        visit(newest);
         let place = self.rest_point();
         let free = place.free_side(&self.model);
         let counted = |turn: &TurningPoint| TurningPoint { t: turn.t, x: turn.x - place.x };
@@ -156,14 +158,17 @@ impl Simulation {
             }
             let turn = counted(&turn);
             match free {
-                Some(_) if side == free => envelope.push(turn),
+                Some(_) if side == free => visit(turn),
                 Some(_) => {}
                 None => {
                     let larger = last.map(|last| match turn.x.abs() > last.x.abs() {
                         true => turn,
                         false => last,
                     });
-                    envelope.extend(larger.filter(|larger| envelope.last() != Some(larger)));
+                    if let Some(larger) = larger.filter(|larger| newest != *larger) {
+                        newest = larger;
+                        visit(larger);
+                    }
                     last = Some(turn);
                 }
             }
@@ -177,11 +182,10 @@ impl Simulation {
             // The beginning of the hold counts, not the end of the run, on which the rest time must
             // not depend.
             let at_rest = self.turns.iter().rev().take_while(|turn| turn.x == self.end_x);
-            envelope.extend(at_rest.last().map(counted));
+            at_rest.last().map(counted).into_iter().for_each(&mut visit);
         } else if self.stop == SimulationStop::RestEnergy {
-            envelope.push(TurningPoint { t: self.end_time, x: self.last_swing() });
+            visit(TurningPoint { t: self.end_time, x: self.last_swing() });
         }
-        envelope
     }
 
     /// The amplitude of a swing with the energy of the end.
@@ -193,14 +197,15 @@ impl Simulation {
 
     /// Determines the rest from the turning points.
     fn rest_by_turns(&self, level: f64) -> Result<RestByTurningPoints, NoRest> {
-        let envelope = self.envelope();
-        let Some(index) = envelope.iter().rposition(|turn| turn.x.abs() > level) else {
-            return Err(NoRest::StaysAbove);
-        };
-        let above = envelope[index];
-        match envelope.get(index + 1) {
-            Some(below) => Ok(RestByTurningPoints::Line { above, below: *below }),
-            None => self.creeping(above, level),
+        let (mut above, mut below) = (None, None);
+        self.each_of_envelope(|turn| match turn.x.abs() > level {
+            true => (above, below) = (Some(turn), None),
+            false => below = below.or(Some(turn)),
+        });
+        match (above, below) {
+            (None, _) => Err(NoRest::StaysAbove),
+            (Some(above), Some(below)) => Ok(RestByTurningPoints::Line { above, below }),
+            (Some(above), None) => self.creeping(above, level),
         }
     }
 

@@ -113,10 +113,13 @@ fn one_impact_a_period_has_its_closed_form() {
 #[test]
 fn kicks_have_their_closed_form() {
     let request = question("x'' + x'/5 + x = 0", &[], ("w", [0.6, 2.3]), "p = 1/2");
-    let asked = with_events(&request, &["sin(w*t) > 0: x' = x' + p"]);
-    let found = respond(&asked).expect("a response");
-    assert_eq!((found.verdict, found.branches.len()), (Verdict::Pass, 1), "{:?}", found.error);
-    for point in &found.branches[0].points {
+    // Both conditions come true at the beginning of a period, the second one to rounding.
+    let points = ["sin(w*t) > 0: x' = x' + p", "cos(w*t - pi/2) > 0: x' = x' + p"].map(|event| {
+        let mut found = respond(&with_events(&request, &[event])).expect("a response");
+        assert_eq!((found.verdict, found.branches.len()), (Verdict::Pass, 1), "{:?}", found.error);
+        found.branches.remove(0).points
+    });
+    for point in points.iter().flatten() {
         let (beta, time) = (0.1_f64, 2.0 * PI / point.parameter);
         let rate = (1.0 - beta * beta).sqrt();
         let (sin, cos) = (rate * time).sin_cos();
@@ -148,6 +151,35 @@ fn kicks_have_their_closed_form() {
         assert!(points().all(|point| point.amplitude < 1e-7), "{periods}");
         assert_eq!(found.verdict, Verdict::Pass);
     }
+}
+
+/// A ball on a table A sin(t), on which it falls once a period: the impact moves through the beginning of the period
+/// along the branch, which is one all the same. Its fold is where A = pi (1 - e)/(1 + e), its period doubling where
+/// A^2 = (pi (1 - e)/(1 + e))^2 + (2 (1 + e^2)/(1 + e)^2)^2 (Guckenheimer and Holmes, section 2.4).
+#[test]
+fn an_impact_may_fall_on_the_beginning_of_a_period() {
+    let request = question("x'' + g = 0", &[("x > A*sin(t)", "4/5")], ("A", [0.34, 1.1]), "g = 1");
+    let found = respond(&request).expect("a response");
+    assert_eq!(found.verdict, Verdict::Pass, "{:?}", found.error);
+    let once: Vec<usize> = (0..found.branches.len())
+        .filter(|index| found.branches[*index].points[0].impacts == 1)
+        .collect();
+    assert_eq!(once.len(), 1, "one branch");
+    let branch = &found.branches[once[0]];
+    assert_eq!(branch.ends, [BranchEnd::Range; 2]);
+    for point in &branch.points {
+        // The product of both multipliers is e^2.
+        let [one, other] = point.multipliers.expect("multipliers");
+        assert!(((one * other).re - 0.64).abs() < 1e-9, "A = {}", point.parameter);
+    }
+    let change = |kind: BifurcationKind| {
+        let mut all = found.bifurcations.iter();
+        all.find(|change| change.kind == kind && change.branch == once[0]).expect("a change").parameter
+    };
+    let fold = PI / 9.0;
+    let doubling = fold.hypot(2.0 * 1.64 / 3.24);
+    assert!((change(BifurcationKind::Fold) - fold).abs() < 1e-8);
+    assert!((change(BifurcationKind::PeriodDoubling) - doubling).abs() < 1e-7);
 }
 
 /// A reset that leads away from its condition lets it come true again in the same period: the motion is that of its

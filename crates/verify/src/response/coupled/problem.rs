@@ -41,13 +41,15 @@ pub(super) struct Course {
     pub(super) monodromy: DMatrix<f64>,
     /// Rests, impacts and events in the period.
     pub(super) encounters: Encounters,
+    /// The phase at which the period begins, of a driven motion; else zero.
+    pub(super) section: f64,
 }
 
 /// An orbit of a branch.
 pub(super) type Orbit = OrbitPoint<Course>;
 
-/// The state whose rate is zero where a motion without a drive begins, and a size for that rate over
-/// the unknown that goes with it.
+/// The beginning of a motion: of one without a drive the state whose rate is zero there, and a size for
+/// that rate over the unknown that goes with it; of a driven one the phase.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Anchor {
     pub(super) state: usize,
@@ -55,11 +57,23 @@ pub(super) struct Anchor {
     /// Whether all rates are zero there, and half a period later: of free motions beside which there are
     /// others with a shift between the coordinates, so that the one rate does not fix the motion.
     pub(super) from_rest: bool,
+    /// The phase of the drive.
+    pub(super) section: f64,
 }
 
 impl Anchor {
-    /// The anchor of driven motions, which need none.
-    pub(super) const NONE: Self = Self { state: 0, size: 1.0, from_rest: false };
+    /// The anchor of driven motions that begin at phase zero.
+    pub(super) const NONE: Self = Self { state: 0, size: 1.0, from_rest: false, section: 0.0 };
+
+    /// The anchor of driven motions that begin at a phase.
+    pub(super) fn at_phase(section: f64) -> Self {
+        Self { section, ..Self::NONE }
+    }
+
+    /// This anchor at the beginning of an orbit.
+    pub(super) fn of_orbit(self, orbit: &Orbit) -> Self {
+        Self { section: orbit.kept.section, ..self }
+    }
 }
 
 /// The equations of orbits.
@@ -163,17 +177,8 @@ impl<'a> CoupledProblem<'a> {
             .map(|rate| rate.substitute_all(&values))
             .collect::<Result<_, _>>()?;
         let states = rates.states.clone();
-        let (walls, mass) = with_numbers(question, equations, &values)?;
-        let events: Vec<StateEvent> = question
-            .events
-            .iter()
-            .map(|event| event.substitute_all(&values))
-            .collect::<Result<_, _>>()?;
-        let mut flow_events: Vec<FlowEvent> = walls
-            .iter()
-            .map(|wall| flow_wall(wall, &mass, &states, &equations.coordinates))
-            .collect::<Result<_, _>>()?;
-        flow_events.extend(events.iter().flat_map(|event| flow_event(event, &states)));
+        let StateJumps { walls, mass, events, flow_events } =
+            StateJumps::new(question, equations, &values)?;
         let in_time =
             Flow::new(&states, time, &right, parameter, &flow_events)?.until(question.interrupt);
         let numbers = [(parameter, ANY)].into();
@@ -183,13 +188,8 @@ impl<'a> CoupledProblem<'a> {
         let names: Vec<Symbol> = states.iter().copied().chain([parameter, time]).collect();
         let (kind, in_phase) = match (driven, free) {
             (true, _) => {
-                let of_events = flow_events.iter();
-                let of_events =
-                    of_events.flat_map(|event| [&event.gap].into_iter().chain(&event.after));
-                let timed: Vec<Expr> = right.iter().chain(of_events).cloned().collect();
-                let frequency = drive_frequency(&timed, &states)?;
-                let periods = Expr::from(i64::try_from(question.periods).unwrap_or(1));
-                let base = Expr::divide(&frequency, &periods)?;
+                let (frequency, base) =
+                    drive_of(&right, &flow_events, &states, question.periods)?;
                 let flow =
                     flow_in_phase(&names, &states, (&right, &flow_events), &base, parameter)?;
                 let base = CompiledFunction::new(&base, &[parameter])?;
@@ -367,7 +367,7 @@ impl<'a> CoupledProblem<'a> {
             let start_of = start.as_slice();
             let held_at = |image| at_places(image, start_of, &mut places.borrow_mut());
             match self.kind {
-                Kind::Driven(_) => self.driven_image(start_of, parameter, scale).map(held_at),
+                Kind::Driven(_) => self.driven_image(start_of, parameter, scale, anchor.section).map(held_at),
                 Kind::SelfExcited => {
                     self.cycle_image(start_of, parameter, scale, anchor).map(held_at)
                 }
@@ -383,7 +383,7 @@ impl<'a> CoupledProblem<'a> {
     }
 
     /// The sizes in which a motion from a start is followed.
-    fn sizes_of_start(&self, start: &[f64], scale: &[f64]) -> Vec<f64> {
+    pub(super) fn sizes_of_start(&self, start: &[f64], scale: &[f64]) -> Vec<f64> {
         let absolute: Vec<f64> = start.iter().map(|value| value.abs()).collect();
         let largest: Vec<f64> = absolute
             .iter()
@@ -413,11 +413,13 @@ impl<'a> CoupledProblem<'a> {
         start: &[f64],
         parameter: f64,
         scale: &[f64],
+        section: f64,
     ) -> Option<PeriodImage<Course>> {
         let sizes = self.sizes_of_start(start, scale);
+        let phases = [section, section + TAU];
         let FlowImage { end, by_start, by_parameter, travel, encounters } =
-            self.in_phase.as_ref()?.image(start, TAU, parameter, &sizes)?;
-        let path = Course { travel, monodromy: by_start.clone(), encounters };
+            self.in_phase.as_ref()?.image(start, phases, parameter, &sizes)?;
+        let path = Course { travel, monodromy: by_start.clone(), encounters, section };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 
@@ -434,13 +436,14 @@ impl<'a> CoupledProblem<'a> {
             return None;
         }
         let sizes = self.sizes_of_start(start, scale);
-        let image = self.in_time.image(start, period, parameter, &sizes)?;
+        let image = self.in_time.image(start, [0.0, period], parameter, &sizes)?;
         let begin = self.in_time.linearised(start, 0.0, parameter);
         let flow = self.in_time.rates_at(image.end.as_slice(), 0.0, parameter);
         let path = Course {
             travel: image.travel,
             monodromy: image.by_start.clone(),
             encounters: image.encounters,
+            section: 0.0,
         };
         let mut by_start = image.by_start.resize(n + 1, n + 1, 0.0);
         by_start.view_mut((0, n), (n, 1)).copy_from(&flow);
@@ -467,7 +470,7 @@ impl<'a> CoupledProblem<'a> {
         let mut sizes = self.sizes_of_start(&start[..n], scale);
         sizes.push(omega);
         let FlowImage { mut end, mut by_start, by_parameter, travel, encounters } =
-            self.in_phase.as_ref()?.image(start, TAU, omega, &sizes)?;
+            self.in_phase.as_ref()?.image(start, [0.0, TAU], omega, &sizes)?;
         // The damping stays what it is; its row holds the rate that is to be zero.
         let velocity = state + self.coordinates;
         end[n] = start[n] + start[velocity] / size;
@@ -475,7 +478,7 @@ impl<'a> CoupledProblem<'a> {
             by_start[(n, column)] = if column == velocity { 1.0 / size } else { 0.0 };
         }
         let monodromy = by_start.view((0, 0), (n, n)).into_owned();
-        let path = Course { travel: travel[..n].to_vec(), monodromy, encounters };
+        let path = Course { travel: travel[..n].to_vec(), monodromy, encounters, section: 0.0 };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 
@@ -494,7 +497,7 @@ impl<'a> CoupledProblem<'a> {
         let (n, m) = (self.states.len(), self.coordinates);
         let mut sizes = self.sizes_of_start(&start[..n], scale);
         sizes.push(omega);
-        let half = self.in_phase.as_ref()?.image(start, 0.5 * TAU, omega, &sizes)?;
+        let half = self.in_phase.as_ref()?.image(start, [0.0, 0.5 * TAU], omega, &sizes)?;
         let mut end = DVector::from_column_slice(start) * 2.0;
         let mut by_start = DMatrix::identity(n + 1, n + 1) * 2.0;
         let mut by_parameter = DVector::zeros(n + 1);
@@ -518,7 +521,7 @@ impl<'a> CoupledProblem<'a> {
         let travel = |(i, travel): (usize, &f64)| if i < m { *travel } else { 2.0 * travel };
         let travel = half.travel[..n].iter().enumerate().map(travel).collect();
         // A free motion has neither impacts nor events.
-        let path = Course { travel, monodromy, encounters: half.encounters };
+        let path = Course { travel, monodromy, encounters: half.encounters, section: 0.0 };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 }
@@ -555,7 +558,57 @@ fn at_places(
     image
 }
 
-/// The walls of a request and the mass matrix, with numbers for all parameters but one.
+/// The frequency of the drive of right sides and events, and that of a motion of so many of its periods.
+///
+/// # Errors
+/// [`ResponseError`] for a drive without one period.
+pub(super) fn drive_of(
+    right: &[Expr],
+    events: &[FlowEvent],
+    states: &[Symbol],
+    periods: usize,
+) -> Result<(Expr, Expr), ResponseError> {
+    let of_events = events.iter().flat_map(|event| [&event.gap].into_iter().chain(&event.after));
+    let timed: Vec<Expr> = right.iter().chain(of_events).cloned().collect();
+    let frequency = drive_frequency(&timed, states)?;
+    let periods = Expr::from(i64::try_from(periods).unwrap_or(1));
+    let base = Expr::divide(&frequency, &periods)?;
+    Ok((frequency, base))
+}
+
+/// The walls and events of a request with values for some of the parameters.
+pub(super) struct StateJumps {
+    walls: Vec<Wall>,
+    /// The mass matrix of the impacts.
+    mass: Vec<Vec<Expr>>,
+    events: Vec<StateEvent>,
+    /// All of them with the states behind each.
+    pub(super) flow_events: Vec<FlowEvent>,
+}
+
+impl StateJumps {
+    /// The walls and events with these values.
+    ///
+    /// # Errors
+    /// [`ResponseError`] for a coefficient of restitution outside 0 to 1, or a wall without a law of impact.
+    pub(super) fn new(
+        question: &ResponseRequest,
+        equations: &CoupledEquations,
+        values: &BTreeMap<Symbol, Expr>,
+    ) -> Result<Self, ResponseError> {
+        let (walls, mass) = with_numbers(question, equations, values)?;
+        let events = question.events.iter().map(|event| event.substitute_all(values));
+        let events: Vec<StateEvent> = events.collect::<Result<_, _>>()?;
+        let states = &equations.rates.states;
+        let of_wall = |wall| flow_wall(wall, &mass, states, &equations.coordinates);
+        let mut flow_events: Vec<FlowEvent> =
+            walls.iter().map(of_wall).collect::<Result<_, _>>()?;
+        flow_events.extend(events.iter().flat_map(|event| flow_event(event, states)));
+        Ok(Self { walls, mass, events, flow_events })
+    }
+}
+
+/// The walls of a request and the mass matrix, with numbers for some of the parameters.
 fn with_numbers(
     question: &ResponseRequest,
     equations: &CoupledEquations,

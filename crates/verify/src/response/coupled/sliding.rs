@@ -83,6 +83,8 @@ pub(super) struct SlidingRun {
     /// The least speed of an impact or into an event, in the sizes of the states over the duration; infinite
     /// if there is none.
     pub(super) slowest: f64,
+    /// The times of impacts and other events.
+    pub(super) times: Vec<f64>,
     /// Evaluations of the rates.
     pub(super) evaluations: u64,
 }
@@ -111,7 +113,7 @@ struct EventRun<'a> {
     sides: Vec<f64>,
     /// The surfaces on which it sticks.
     held: Held,
-    bounds: RefCell<[Vec<f64>; 2]>,
+    bounds: [Vec<f64>; 2],
     /// The numbers of impacts and of other events, and of the last ones that followed each other at once.
     impacts: usize,
     events: usize,
@@ -120,6 +122,8 @@ struct EventRun<'a> {
     last: f64,
     passed: Vec<f64>,
     slowest: f64,
+    /// The times of all impacts and other events.
+    times: Vec<f64>,
     evaluations: Cell<u64>,
 }
 
@@ -162,12 +166,13 @@ pub(super) fn follow(
             None => {
                 return Ok(SlidingRun {
                     values: run.values,
-                    bounds: run.bounds.into_inner(),
+                    bounds: run.bounds,
                     stuck,
                     throughout: throughout.unwrap_or_default(),
                     impacts: run.impacts,
                     events: run.events,
                     slowest: run.slowest,
+                    times: run.times,
                     evaluations: run.evaluations.get(),
                 });
             }
@@ -183,21 +188,21 @@ pub(super) fn follow(
     Err(SlidingStop::Chatter(nearest.unwrap_or(0)))
 }
 
-/// The arguments of all functions at time zero, on the positive side of all surfaces.
-fn at_beginning(surfaces: &JumpSurfaces, state: &[f64], parameter: f64) -> Vec<f64> {
+/// The arguments of all functions at a time and a parameter, on the positive side of all surfaces.
+fn at_beginning(surfaces: &JumpSurfaces, state: &[f64], at: [f64; 2]) -> Vec<f64> {
     let sides = surfaces.arguments.iter().map(|_| 1.0);
-    state.iter().copied().chain([0.0, parameter]).chain(sides).collect()
+    state.iter().copied().chain(at).chain(sides).collect()
 }
 
-/// The least gap of an event at time zero, where every state changes by a unit of its size; infinite without
-/// events.
+/// The least gap of an event at a time and a parameter, where every state changes by a unit of its size;
+/// infinite without events.
 pub(super) fn least_gap(
     surfaces: &JumpSurfaces,
     state: &[f64],
-    parameter: f64,
+    at: [f64; 2],
     sizes: &[f64],
 ) -> f64 {
-    let arguments = at_beginning(surfaces, state, parameter);
+    let arguments = at_beginning(surfaces, state, at);
     let gap = |event: &EventMap| {
         let normal = event.normal.at(&arguments);
         let size: f64 =
@@ -207,13 +212,29 @@ pub(super) fn least_gap(
     surfaces.events.iter().map(gap).fold(f64::INFINITY, f64::min)
 }
 
-/// The state behind the nearest event at time zero; `None` without events.
+/// The gaps of all events at a time and a parameter, each with its rate.
+pub(super) fn gaps(surfaces: &JumpSurfaces, state: &[f64], at: [f64; 2]) -> Vec<[f64; 2]> {
+    let mut arguments = at_beginning(surfaces, state, at);
+    let first = state.len() + 2;
+    for (index, height) in surfaces.heights.iter().enumerate() {
+        arguments[first + index] = if height.call(&arguments) < 0.0 { -1.0 } else { 1.0 };
+    }
+    let rates = surfaces.rates.at(&arguments);
+    let gap = |event: &EventMap| {
+        let normal = event.normal.at(&arguments);
+        let carried: f64 = (0..state.len()).map(|k| normal[(0, k)] * rates[(k, 0)]).sum();
+        [event.gap.call(&arguments), carried + normal[(0, state.len() + 1)]]
+    };
+    surfaces.events.iter().map(gap).collect()
+}
+
+/// The state behind the nearest event at a time and a parameter; `None` without events.
 pub(super) fn behind_event(
     surfaces: &JumpSurfaces,
     state: &[f64],
-    parameter: f64,
+    at: [f64; 2],
 ) -> Option<Vec<f64>> {
-    let arguments = at_beginning(surfaces, state, parameter);
+    let arguments = at_beginning(surfaces, state, at);
     let gap = |event: &&EventMap| event.gap.call(&arguments).abs();
     let nearest = surfaces.events.iter().min_by(|one, other| gap(one).total_cmp(&gap(other)))?;
     let after = nearest.after.at(&arguments);
@@ -228,7 +249,7 @@ pub(super) fn in_front_of_walls(
 ) -> Vec<f64> {
     let n = surfaces.states;
     for wall in surfaces.events.iter().filter(|event| event.is_wall) {
-        let arguments = at_beginning(surfaces, &state, parameter);
+        let arguments = at_beginning(surfaces, &state, [0.0, parameter]);
         let gap = wall.gap.call(&arguments);
         if gap < 0.0 {
             let normal = wall.normal.at(&arguments);
@@ -303,13 +324,14 @@ impl<'a> EventRun<'a> {
             values,
             sides: vec![1.0; surfaces.arguments.len()],
             held: Held::default(),
-            bounds: RefCell::new([start.to_vec(), start.to_vec()]),
+            bounds: [start.to_vec(), start.to_vec()],
             impacts: 0,
             events: 0,
             at_once: 0,
             last: f64::NEG_INFINITY,
             passed: vec![f64::NEG_INFINITY; surfaces.events.len()],
             slowest: f64::INFINITY,
+            times: Vec::new(),
             evaluations: Cell::new(0),
         }
     }
@@ -414,6 +436,8 @@ impl<'a> EventRun<'a> {
         let (first, duration) = (n + 2, to - from);
         let memory = RefCell::new(Vec::new());
         let memory = &memory;
+        // The instants at which the rates were asked for, each with the states.
+        let seen = RefCell::new(Vec::new());
         let rates = |time: f64, values: &Vec<f64>, rates: &mut Vec<f64>| {
             let columns = if run.unit.is_some() { n + 1 } else { 0 };
             run.evaluations.set(run.evaluations.get() + 1 + columns as u64);
@@ -423,11 +447,9 @@ impl<'a> EventRun<'a> {
                 rates.fill(f64::NAN);
                 return;
             }
-            let [low, high] = &mut *run.bounds.borrow_mut();
-            for i in 0..n {
-                low[i] = low[i].min(arguments[i]);
-                high[i] = high[i].max(arguments[i]);
-            }
+            let seen = &mut *seen.borrow_mut();
+            seen.push(time);
+            seen.extend_from_slice(&arguments[..n]);
             match run.unit {
                 None => {
                     rates.fill(0.0);
@@ -475,7 +497,10 @@ impl<'a> EventRun<'a> {
                 }
                 let arguments = &mut *memory.borrow_mut();
                 run.set_arguments(point.t, &point.y, arguments);
-                event.gap.call(arguments) + unseen
+                let gap = event.gap.call(arguments);
+                let is_watched =
+                    (from + event.unwatched..=to - event.unwatched).contains(&point.t);
+                if is_watched { gap + unseen } else { gap.abs() + unseen }
             };
             events.push(Event::new(gap, Action::Stop).falling().reading(n));
             meetings.push(Meeting::Event(index));
@@ -493,7 +518,23 @@ impl<'a> EventRun<'a> {
         drop(events);
         let end = path.end();
         (self.time, self.values) = (end.t, end.y);
+        self.widen_bounds(&seen.into_inner());
         Ok(meeting)
+    }
+
+    /// Takes the states at these instants, as far as the motion has come, into its bounds: the last step
+    /// before an event leads beyond it.
+    fn widen_bounds(&mut self, seen: &[f64]) {
+        let n = self.surfaces.states;
+        let end: Vec<f64> = { self.values.iter().zip(self.sizes) }.map(|(y, size)| y * size).collect();
+        let [low, high] = &mut self.bounds;
+        let before = seen.chunks_exact(n + 1).filter(|at| at[0] <= self.time);
+        for states in before.map(|at| &at[1..]).chain([end.as_slice()]) {
+            for (i, state) in states.iter().enumerate() {
+                low[i] = low[i].min(*state);
+                high[i] = high[i].max(*state);
+            }
+        }
     }
 
     /// The rates of states and variations.

@@ -86,6 +86,9 @@ pub(super) struct EventMap {
     pub(super) after: Table,
     /// Whether no motion is behind it, as behind a wall.
     pub(super) is_wall: bool,
+    /// The duration at both ends of a run within which it does not take place, as where a run begins and
+    /// ends with a grazing.
+    pub(super) unwatched: f64,
 }
 
 /// Rates with the surfaces across which they jump and the events at which states do, compiled. The
@@ -213,6 +216,7 @@ impl JumpSurfaces {
                 normal: table(std::slice::from_ref(&event.gap), false, &[&by_all])?,
                 after: table(&event.after, true, &[&by_all])?,
                 is_wall: event.is_wall,
+                unwatched: 0.0,
             })
         };
         Ok(Some(Self {

@@ -48,7 +48,7 @@ impl EventRun<'_> {
         let is_behind = |(index, event): (usize, &EventMap)| {
             let gap = event.gap.call(&arguments);
             let least = -AT_REST * self.size_of_gap(index, &arguments);
-            gap.is_nan() || event.is_wall && gap < least
+            gap.is_nan() || event.is_wall && event.unwatched == 0.0 && gap < least
         };
         match self.surfaces.events.iter().enumerate().any(is_behind) {
             true => Err(SlidingStop::NoValue),
@@ -137,6 +137,7 @@ impl EventRun<'_> {
             });
         }
         (self.last, self.passed[event]) = (self.time, self.time);
+        self.times.push(self.time);
         *(if map.is_wall { &mut self.impacts } else { &mut self.events }) += 1;
         let slowness = -speed * duration / self.size_of_gap(event, &arguments);
         self.slowest = self.slowest.min(slowness);

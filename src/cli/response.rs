@@ -158,9 +158,8 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
         interrupt,
         progress,
     };
-    question.along = along
-        .map(|text| second_parameter(text, parameter, &question.parameters()))
-        .transpose()?;
+    question.along =
+        along.map(|text| second_parameter(text, parameter, &question.parameters())).transpose()?;
     let mut coupled = None;
     let slow = match (method, question.equations.oscillator()) {
         (Method::HarmonicBalance, _) => None,

@@ -8,7 +8,8 @@ use lindstedt::event::StateEvent;
 use lindstedt::response::bifurcation::BifurcationKind;
 use lindstedt::response::continuation::BranchEnd;
 use lindstedt::response::{
-    Equations, ResponseDiagram, ResponseError, ResponseRequest, SteadyMotion, respond,
+    BifurcationCurve, Equations, ResponseDiagram, ResponseError, ResponseRequest, SteadyMotion,
+    respond,
 };
 use lindstedt::verify::Verdict;
 use lindstedt::wall::Wall;
@@ -174,7 +175,9 @@ fn an_impact_may_fall_on_the_beginning_of_a_period() {
     }
     let change = |kind: BifurcationKind| {
         let mut all = found.bifurcations.iter();
-        all.find(|change| change.kind == kind && change.branch == once[0]).expect("a change").parameter
+        all.find(|change| change.kind == kind && change.branch == once[0])
+            .expect("a change")
+            .parameter
     };
     let fold = PI / 9.0;
     let doubling = fold.hypot(2.0 * 1.64 / 3.24);
@@ -340,4 +343,88 @@ fn coupled_bodies_with_a_wall_between_them_are_followed() {
     let points = || found.branches.iter().flat_map(|branch| &branch.points);
     assert!(points().any(|point| point.impacts > 0));
     assert!(points().any(|point| point.stable == Some(true)));
+}
+
+/// A ball that does not bounce, on a table A sin(t) with A below and above g: it rests on the table, leaves it where
+/// A sin(t) = g, and rests again where it lands. Nothing of what was before is left: both multipliers are zero.
+#[test]
+fn a_ball_that_does_not_bounce_rests_and_leaves() {
+    let request = question("x'' + g = 0", &[("x > A*sin(t)", "0")], ("A", [0.9, 1.8]), "g = 1");
+    let found = respond(&request).expect("a response");
+    assert_eq!((found.verdict, found.branches.len()), (Verdict::Pass, 1), "{:?}", found.error);
+    let branch = &found.branches[0];
+    assert_eq!(branch.ends, [BranchEnd::Range; 2]);
+    for point in &branch.points {
+        let a = point.parameter;
+        // The gap at a time after the release, and where it is closed.
+        let release = if a > 1.0 { (1.0 / a).asin() } else { 0.0 };
+        let gap = |s: f64| 1.0 + a * release.cos() * s - 0.5 * s * s - a * (release + s).sin();
+        let grid = (0..=1000).map(|index| 2.0 * PI * f64::from(index) / 1000.0);
+        let highest = grid.max_by(|one, other| gap(*one).total_cmp(&gap(*other))).unwrap();
+        let (mut low, mut high) = (highest, 2.0 * PI);
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if gap(middle) > 0.0 { low = middle } else { high = middle }
+        }
+        let rests = if a > 1.0 { 1.0 - low / (2.0 * PI) } else { 1.0 };
+        if a <= 1.0 || a > 1.05 {
+            assert!((point.stuck - rests).abs() < 1e-6, "A = {a}: {} {rests}", point.stuck);
+        }
+        let [one, other] = point.multipliers.expect("multipliers");
+        assert!(one.norm().max(other.norm()) < 1e-6, "A = {a}: {one} {other}");
+        assert!(point.error.is_some_and(|error| error < 1e-7), "A = {a}: {:?}", point.error);
+    }
+    let grazing = found.bifurcations.iter().find(|change| change.kind == BifurcationKind::Grazing);
+    assert!((grazing.expect("the first release").parameter - 1.0).abs() < 1e-6);
+}
+
+/// Bifurcations of a ball on a table in the amplitude and in the coefficient of restitution: the fold is where
+/// A = pi (1 - e)/(1 + e), the period doubling where A^2 is more by (2 (1 + e^2)/(1 + e)^2)^2.
+#[test]
+fn bifurcations_with_walls_are_followed_in_two_parameters() {
+    let request =
+        question("x'' + g = 0", &[("x > A*sin(t)", "e")], ("A", [0.3, 1.15]), "g = 1, e = 4/5");
+    let along = Some(("e".into(), [0.78, 0.82]));
+    let found = respond(&ResponseRequest { along, ..request }).expect("a response");
+    let fold = |e: f64| PI * (1.0 - e) / (1.0 + e);
+    let doubling = |e: f64| fold(e).hypot(2.0 * (1.0 + e * e) / (1.0 + e).powi(2));
+    for (kind, expected) in [
+        (BifurcationKind::Fold, &fold as &dyn Fn(f64) -> f64),
+        (BifurcationKind::PeriodDoubling, &doubling),
+    ] {
+        let curves = found.curves.iter().filter(|curve| curve.kind == kind);
+        let is_expected = |curve: &&BifurcationCurve| {
+            let apart =
+                curve.points.iter().map(|point| (point.parameter - expected(point.along)).abs());
+            curve.points.len() > 5 && apart.fold(0.0, f64::max) < 1e-6
+        };
+        assert_eq!(curves.filter(is_expected).count(), 1, "{kind:?}: {:?}", found.curves);
+    }
+    assert!(found.stable_motions.is_some());
+}
+
+/// The curve on which two coupled bodies touch: the distance between them is that of one oscillator with the
+/// frequency 3^(1/2), whose amplitude is that of the wall.
+#[test]
+fn a_grazing_is_followed_in_two_parameters() {
+    let asked = question(
+        "x'' + x'/10 + 2*x - y = F*cos(w*t); y'' + y'/10 + 2*y - x = 0",
+        &[("x - y < 0.3", "1/2")],
+        ("F", [0.3, 0.5]),
+        "w = 6/5",
+    );
+    let found = respond(&ResponseRequest { along: Some(("w".into(), [1.15, 1.25])), ..asked });
+    let found = found.expect("a response");
+    let grazing = found.curves.iter().find(|curve| curve.kind == BifurcationKind::Grazing);
+    let grazing = grazing.expect("a curve");
+    assert!(grazing.points.len() > 5);
+    for point in &grazing.points {
+        let w = point.along;
+        let expected = 0.3 * (3.0 - w * w).hypot(0.1 * w);
+        assert!(
+            (point.parameter - expected).abs() < 1e-8,
+            "w = {w}: {} {expected}",
+            point.parameter
+        );
+    }
 }

@@ -1,5 +1,7 @@
 //! Branches of orbits: through starts, through crossings with known ones, each once.
 
+use std::f64::consts::TAU;
+
 use nalgebra::DVector;
 use num_complex::Complex;
 
@@ -32,7 +34,8 @@ impl OrbitBranch {
 
     /// The orbits without those that are there a second time, at another phase.
     pub(super) fn distinct(&self) -> impl Iterator<Item = &Orbit> {
-        let is_again = |index: usize| self.orbits[index - 1].kept.section != self.orbits[index].kept.section;
+        let is_again =
+            |index: usize| self.orbits[index - 1].kept.section != self.orbits[index].kept.section;
         let all = self.orbits.iter().enumerate();
         all.filter(move |(index, _)| *index == 0 || !is_again(*index)).map(|(_, orbit)| orbit)
     }
@@ -342,12 +345,7 @@ impl CoupledProblem<'_> {
     }
 
     /// The branch through an orbit, both ways, in the range of the request.
-    fn branch_through(
-        &self,
-        orbit: Orbit,
-        scale: &[f64],
-        anchor: Anchor,
-    ) -> OrbitBranch {
+    fn branch_through(&self, orbit: Orbit, scale: &[f64], anchor: Anchor) -> OrbitBranch {
         const ENORMOUS: f64 = 1e4;
         let n = self.coordinates;
         let extent = |travel: &[f64]| travel[..n].iter().copied().fold(0.0, f64::max);
@@ -434,7 +432,7 @@ impl CoupledProblem<'_> {
         if flow.least_gap(start, orbit.kept.section, orbit.parameter(), &sizes) < NEAR * NEAR {
             return Some(BranchEnd::ImpactAtStart);
         }
-        if orbit.kept.encounters.counts() != [0, 0] {
+        if orbit.kept.encounters.counts() != [0; 3] {
             return (orbit.kept.encounters.slowest < SLOW).then_some(BranchEnd::Grazing);
         }
         const PLACES: usize = 256;
@@ -548,13 +546,7 @@ impl CoupledProblem<'_> {
 
     /// The states in which an orbit passes a phase in each drive period, and those of its mirror images, half a period of the drive later. A motion that nothing drives may begin
     /// anywhere on itself: its only image is the mirrored one.
-    fn images(
-        &self,
-        orbit: &Orbit,
-        section: f64,
-        scale: &[f64],
-    ) -> Option<[Vec<Vec<f64>>; 2]> {
-        use std::f64::consts::TAU;
+    fn images(&self, orbit: &Orbit, section: f64, scale: &[f64]) -> Option<[Vec<Vec<f64>>; 2]> {
         let start = self.state_at_phase(orbit, section, scale)?;
         let negative = |state: Vec<f64>| state.into_iter().map(|value| -value).collect();
         match self.kind {
@@ -621,8 +613,13 @@ impl CoupledProblem<'_> {
         let mut images: Vec<(f64, Option<[Vec<Vec<f64>>; 2]>)> = Vec::new();
         let sizes = self.state_sizes(&orbit.kept.travel, &known.scale);
         let apart = |one: &[f64], other: &[f64]| {
-            let each = one.iter().zip(other).zip(&sizes);
-            each.map(|((one, other), size)| ((one - other) / size).abs()).fold(0.0, f64::max)
+            let each = one.iter().zip(other).zip(&sizes).enumerate();
+            let each = each.map(|(index, ((one, other), size))| {
+                let way = one - other;
+                let turns = if self.angles.contains(&index) { (way / TAU).round() } else { 0.0 };
+                ((way - TAU * turns) / size).abs()
+            });
+            each.fold(0.0, f64::max)
         };
         // Cycles may begin anywhere on themselves: they are compared by travel and period.
         let by_travel = matches!(self.kind, Kind::SelfExcited | Kind::Free);

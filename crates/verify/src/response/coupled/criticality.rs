@@ -75,11 +75,8 @@ impl CoupledProblem<'_> {
         // Both tangents lead along the branch.
         let forward = pair[0].parameter < pair[1].parameter;
         let orbit = |point: &SteadyMotion| {
-            let start = Start {
-                parameter: point.parameter,
-                unknowns: point.start.to_vec(),
-                section: 0.0,
-            };
+            let start =
+                Start { parameter: point.parameter, unknowns: point.start.to_vec(), section: 0.0 };
             let orbit = self.orbit_near(&start, scale, Anchor::NONE)?;
             Some(if forward { orbit } else { orbit.reversed() })
         };

@@ -21,7 +21,8 @@ use nalgebra::{DMatrix, DVector};
 use super::branches::Known;
 use super::changes::changes_between;
 use super::flow::Flow;
-use super::problem::{CoupledProblem, Kind, StateJumps, drive_of, flow_in_phase};
+use super::problem::{CoupledProblem, Kind};
+use super::state_jumps::{StateJumps, drive_of, flow_in_phase};
 use crate::coupled::CoupledEquations;
 use crate::expr::Expr;
 use crate::numeric::orbit_branch::{OrbitBranchLimits, OrbitEquations, OrbitPoint, PeriodImage};
@@ -138,8 +139,9 @@ impl CoupledProblem<'_> {
         let states: Vec<Symbol> = self.states.iter().copied().chain([second]).collect();
         let names: Vec<Symbol> =
             states.iter().copied().chain([self.question.parameter, Symbol::new("t")]).collect();
-        let flow = flow_in_phase(&names, &states, (&right, &events), &base, self.question.parameter)?
-            .until(self.question.interrupt);
+        let flow =
+            flow_in_phase(&names, &states, (&right, &events), &base, self.question.parameter)?
+                .until(self.question.interrupt);
         let two = TwoParameters { problem: self, flow, scale: &known.scale };
         let mut curves: Vec<BifurcationCurve> = Vec::new();
         for branch in &known.branches {

@@ -230,7 +230,10 @@ impl CoupledProblem<'_> {
         let is_smooth = |state: &&usize| self.in_time.has_smooth_turn(&self.states, **state);
         let (turning, begin) = highest(*states.iter().find(is_smooth)?)?;
         let unknowns = begin.into_iter().chain([period]).collect();
-        Some((Start { parameter, unknowns, section: 0.0 }, anchor_of(turning, travel[turning], period)))
+        Some((
+            Start { parameter, unknowns, section: 0.0 },
+            anchor_of(turning, travel[turning], period),
+        ))
     }
 }
 

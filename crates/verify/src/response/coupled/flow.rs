@@ -89,10 +89,12 @@ pub(super) struct FlowImage {
 /// Rests, impacts and events of a motion over a time.
 #[derive(Clone, Debug)]
 pub(super) struct Encounters {
-    /// The part of the time in which dry friction holds something.
+    /// The part of the time in which dry friction holds something, or something rests on a wall.
     pub(super) stuck: f64,
-    /// The number of impacts on walls.
+    /// The number of impacts on walls, without those that accumulate before a rest.
     pub(super) impacts: usize,
+    /// The number of rests on walls that begin.
+    pub(super) rests: usize,
     /// The number of other events.
     pub(super) events: usize,
     /// The least speed at which a wall is hit or an event begins, in the sizes of the states over the time;
@@ -110,15 +112,16 @@ impl Encounters {
     const NONE: Self = Self {
         stuck: 0.0,
         impacts: 0,
+        rests: 0,
         events: 0,
         slowest: f64::INFINITY,
         places: vec![],
         times: vec![],
     };
 
-    /// The numbers of impacts and of other events.
-    pub(super) fn counts(&self) -> [usize; 2] {
-        [self.impacts, self.events]
+    /// The numbers of impacts, of rests on walls and of other events.
+    pub(super) fn counts(&self) -> [usize; 3] {
+        [self.impacts, self.rests, self.events]
     }
 }
 
@@ -215,13 +218,7 @@ impl Flow {
 
     /// The least gap of an event at a time, where every state changes by a unit of its size; infinite
     /// without events.
-    pub(super) fn least_gap(
-        &self,
-        state: &[f64],
-        time: f64,
-        parameter: f64,
-        sizes: &[f64],
-    ) -> f64 {
+    pub(super) fn least_gap(&self, state: &[f64], time: f64, parameter: f64, sizes: &[f64]) -> f64 {
         let least = |jumps| sliding::least_gap(jumps, state, [time, parameter], sizes);
         self.jumps.as_ref().map_or(f64::INFINITY, least)
     }
@@ -234,6 +231,15 @@ impl Flow {
         parameter: f64,
     ) -> Option<Vec<f64>> {
         sliding::behind_event(self.jumps.as_ref()?, state, [time, parameter])
+    }
+
+    /// The state on the walls from which it is apart by no more than a search for an orbit leaves.
+    pub(super) fn onto_walls(&self, state: &[f64], time: f64, parameter: f64) -> Vec<f64> {
+        let state = state.to_vec();
+        match &self.jumps {
+            Some(jumps) => sliding::onto_walls(jumps, state, [time, parameter]),
+            None => state,
+        }
     }
 
     /// The gaps of all events at a state and a time with a parameter, each with its rate.
@@ -413,6 +419,7 @@ impl Flow {
             let encounters = Encounters {
                 stuck: run.stuck / (to - from),
                 impacts: run.impacts,
+                rests: run.rests,
                 events: run.events,
                 slowest: run.slowest,
                 places: jumps.places_on(&run.throughout),

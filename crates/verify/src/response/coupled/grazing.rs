@@ -58,7 +58,10 @@ impl TwoParameters<'_> {
             // A touch from the side on which the motion is.
             let is_inside = of_event().filter(|own| own[0] > 0.0).count() > PLACES / 2;
             let measured = of_event().map(move |own| (own[0] / gap).abs() + (own[1] / rate).abs());
-            measured.enumerate().filter(move |_| is_inside).map(move |(index, at)| (at, event, index))
+            measured
+                .enumerate()
+                .filter(move |_| is_inside)
+                .map(move |(index, at)| (at, event, index))
         });
         let (_, event, index) = { found }.min_by(|(one, ..), (other, ..)| one.total_cmp(other))?;
         let (phase, state, _) = &course[index];
@@ -121,7 +124,8 @@ impl TwoParameters<'_> {
                 let state: Vec<f64> = state.iter().copied().chain([second]).collect();
                 two.flow.rates_at(&state, phase, parameters[0]).rows(0, n).into_owned()
             };
-            let by_phase = rates(image.end.as_slice(), phase + TAU) - &image.monodromy * rates(state, phase);
+            let by_phase =
+                rates(image.end.as_slice(), phase + TAU) - &image.monodromy * rates(state, phase);
             let ([gap, rate], slopes) = (gap(&unknowns)?, gradients(&unknowns)?);
             let mut by_start = image.monodromy.resize(n + 2, n + 2, 0.0);
             by_start.view_mut((0, n), (n, 1)).copy_from(&by_phase);

@@ -144,7 +144,7 @@ impl CoupledProblem<'_> {
             let coordinates = self.states[..self.coordinates].to_vec();
             let course = TrajectoryRequest {
                 values: numbers,
-                start: start.to_vec(),
+                start: self.in_time.onto_walls(start, begin, parameter),
                 duration,
                 step_limit: STEP_LIMIT,
                 interrupt: self.question.interrupt,
@@ -228,7 +228,8 @@ impl CoupledProblem<'_> {
         let mut before = 0.0;
         for time in times {
             if *time > before
-                && let Some(next) = self.in_time.end(&state, [begin + before, begin + *time], parameter, &sizes)
+                && let Some(next) =
+                    self.in_time.end(&state, [begin + before, begin + *time], parameter, &sizes)
             {
                 state = next;
             }

@@ -12,7 +12,7 @@
 //!
 //! - `problem`: the equations with numbers for all parameters but one, and the maps of a period.
 //! - `flow`: the motion with its variations by Runge-Kutta.
-//! - `surfaces`: rates that jump, and where they do; `sliding`: the motion across jumps, with sticking.
+//! - `state_jumps`: walls and events; `surfaces`: rates that jump, and where they do; `sliding`: the motion across jumps, with sticking.
 //! - `sections`: the phases at which periods with impacts or events begin.
 //! - `starts`: the motions from which branches of a driven system start; `guesses`: those of one
 //!   harmonic.
@@ -42,6 +42,7 @@ mod problem;
 mod sections;
 mod sliding;
 mod starts;
+mod state_jumps;
 mod surfaces;
 mod wave;
 

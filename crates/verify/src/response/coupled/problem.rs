@@ -19,12 +19,12 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DVector};
 
 use super::flow::{Encounters, Flow, FlowImage};
-use super::surfaces::{FlowEvent, largest};
+use super::state_jumps::{StateJumps, angles, drive_of, flow_in_phase};
+use super::surfaces::largest;
 use crate::coupled::{CoupledEquations, Energy};
 use crate::event::StateEvent;
 use crate::expr::{CompiledFunction, Expr};
 use crate::numeric::orbit_branch::{OrbitEquations, OrbitPoint, PeriodImage};
-use crate::response::driven::{drive_frequency, in_phase};
 use crate::response::{ResponseError, ResponseRequest};
 use crate::symbol::{Symbol, fresh};
 use crate::system::{Solver, System, SystemOptions};
@@ -126,6 +126,8 @@ pub(super) struct CoupledProblem<'a> {
     pub(super) undamped: bool,
     /// The quantity that is listed, in the coordinates.
     pub(super) shown: CompiledFunction,
+    /// The coordinates that are angles: a turn of 2 pi changes nothing.
+    pub(super) angles: Vec<usize>,
     /// Whether a motion was met in which dry friction holds everything.
     pub(super) rests: Cell<bool>,
     /// The energy of a free motion without damping, and the place of rest from which it is counted.
@@ -188,8 +190,7 @@ impl<'a> CoupledProblem<'a> {
         let names: Vec<Symbol> = states.iter().copied().chain([parameter, time]).collect();
         let (kind, in_phase) = match (driven, free) {
             (true, _) => {
-                let (frequency, base) =
-                    drive_of(&right, &flow_events, &states, question.periods)?;
+                let (frequency, base) = drive_of(&right, &flow_events, &states, question.periods)?;
                 let flow =
                     flow_in_phase(&names, &states, (&right, &flow_events), &base, parameter)?;
                 let base = CompiledFunction::new(&base, &[parameter])?;
@@ -226,6 +227,7 @@ impl<'a> CoupledProblem<'a> {
             question,
             energy: None,
             rests: Cell::new(false),
+            angles: angles(&states, &right, &flow_events, parameter, equations.coordinates.len())?,
             smooth: !right.iter().any(Expr::contains_corner),
             kind,
             coordinates: equations.coordinates.len(),
@@ -295,14 +297,17 @@ impl<'a> CoupledProblem<'a> {
     /// `scale`: at least a tenth of the largest of its kind, positions or velocities.
     pub(super) fn state_sizes(&self, travel: &[f64], scale: &[f64]) -> Vec<f64> {
         let n = self.coordinates;
+        /// Size of what is rounding where nothing moves and states are set to numbers.
+        const NOTHING: f64 = 1e-12;
         let least = self.least_sizes(travel);
+        let least_size = if self.question.has_jumps_of_states() { NOTHING } else { 0.0 };
         let own = |index: usize| {
             let kind = usize::from(index >= n);
             let of_kind = if kind == 0 { &travel[..n] } else { &travel[n..self.states.len()] };
             let largest = of_kind.iter().copied().fold(0.0, f64::max);
             let others = scale.get(index).copied().unwrap_or(0.0);
             let size = travel[index].max(SMALLEST * largest.max(others)).max(least[kind]);
-            if size > 0.0 && size.is_finite() { size } else { 1.0 }
+            if size > least_size && size.is_finite() { size } else { 1.0 }
         };
         (0..self.states.len()).map(own).collect()
     }
@@ -367,7 +372,9 @@ impl<'a> CoupledProblem<'a> {
             let start_of = start.as_slice();
             let held_at = |image| at_places(image, start_of, &mut places.borrow_mut());
             match self.kind {
-                Kind::Driven(_) => self.driven_image(start_of, parameter, scale, anchor.section).map(held_at),
+                Kind::Driven(_) => {
+                    self.driven_image(start_of, parameter, scale, anchor.section).map(held_at)
+                }
                 Kind::SelfExcited => {
                     self.cycle_image(start_of, parameter, scale, anchor).map(held_at)
                 }
@@ -556,129 +563,6 @@ fn at_places(
         }
     }
     image
-}
-
-/// The frequency of the drive of right sides and events, and that of a motion of so many of its periods.
-///
-/// # Errors
-/// [`ResponseError`] for a drive without one period.
-pub(super) fn drive_of(
-    right: &[Expr],
-    events: &[FlowEvent],
-    states: &[Symbol],
-    periods: usize,
-) -> Result<(Expr, Expr), ResponseError> {
-    let of_events = events.iter().flat_map(|event| [&event.gap].into_iter().chain(&event.after));
-    let timed: Vec<Expr> = right.iter().chain(of_events).cloned().collect();
-    let frequency = drive_frequency(&timed, states)?;
-    let periods = Expr::from(i64::try_from(periods).unwrap_or(1));
-    let base = Expr::divide(&frequency, &periods)?;
-    Ok((frequency, base))
-}
-
-/// The walls and events of a request with values for some of the parameters.
-pub(super) struct StateJumps {
-    walls: Vec<Wall>,
-    /// The mass matrix of the impacts.
-    mass: Vec<Vec<Expr>>,
-    events: Vec<StateEvent>,
-    /// All of them with the states behind each.
-    pub(super) flow_events: Vec<FlowEvent>,
-}
-
-impl StateJumps {
-    /// The walls and events with these values.
-    ///
-    /// # Errors
-    /// [`ResponseError`] for a coefficient of restitution outside 0 to 1, or a wall without a law of impact.
-    pub(super) fn new(
-        question: &ResponseRequest,
-        equations: &CoupledEquations,
-        values: &BTreeMap<Symbol, Expr>,
-    ) -> Result<Self, ResponseError> {
-        let (walls, mass) = with_numbers(question, equations, values)?;
-        let events = question.events.iter().map(|event| event.substitute_all(values));
-        let events: Vec<StateEvent> = events.collect::<Result<_, _>>()?;
-        let states = &equations.rates.states;
-        let of_wall = |wall| flow_wall(wall, &mass, states, &equations.coordinates);
-        let mut flow_events: Vec<FlowEvent> =
-            walls.iter().map(of_wall).collect::<Result<_, _>>()?;
-        flow_events.extend(events.iter().flat_map(|event| flow_event(event, states)));
-        Ok(Self { walls, mass, events, flow_events })
-    }
-}
-
-/// The walls of a request and the mass matrix, with numbers for some of the parameters.
-fn with_numbers(
-    question: &ResponseRequest,
-    equations: &CoupledEquations,
-    values: &BTreeMap<Symbol, Expr>,
-) -> Result<(Vec<Wall>, Vec<Vec<Expr>>), ResponseError> {
-    let wall = |wall: &Wall| -> Result<Wall, ResponseError> {
-        Ok(Wall {
-            gap: wall.gap.substitute_all(values)?,
-            restitution: wall.restitution.substitute_all(values)?,
-        })
-    };
-    for wall in &question.walls {
-        let mut numbers: BTreeMap<Symbol, f64> = question.values.numbers();
-        for end in question.range {
-            numbers.insert(question.parameter, end);
-            wall.restitution_at(&numbers)?;
-        }
-    }
-    let row = |row: &Vec<Expr>| row.iter().map(|entry| entry.substitute_all(values)).collect();
-    let mass = equations.matrix.iter().map(row).collect::<Result<_, _>>()?;
-    Ok((question.walls.iter().map(wall).collect::<Result<_, _>>()?, mass))
-}
-
-/// A wall with the states after an impact.
-fn flow_wall(
-    wall: &Wall,
-    mass: &[Vec<Expr>],
-    states: &[Symbol],
-    coordinates: &[Symbol],
-) -> Result<FlowEvent, ResponseError> {
-    let impact = wall.impact(coordinates, states, Some(mass))?;
-    let velocities = impact.velocities_after(coordinates, &wall.restitution)?;
-    let positions = coordinates.iter().copied().map(Expr::from);
-    let after = positions.chain(velocities).collect();
-    Ok(FlowEvent { gap: impact.gap, after, is_wall: true })
-}
-
-/// An event with all states after it; one that counts in both directions is two.
-fn flow_event(event: &StateEvent, states: &[Symbol]) -> Vec<FlowEvent> {
-    let after = |state: &Symbol| {
-        let set = event.assignments.iter().find(|(name, _)| name == state);
-        set.map_or_else(|| Expr::from(*state), |(_, value)| value.clone())
-    };
-    let after: Vec<Expr> = states.iter().map(after).collect();
-    let falling = |gap: Expr| FlowEvent { gap, after: after.clone(), is_wall: false };
-    let growing = event.both_ways.then(|| falling(event.guard.clone()));
-    [falling(-&event.guard)].into_iter().chain(growing).collect()
-}
-
-/// The right sides and events in the phase of a motion of frequency `base`.
-pub(super) fn flow_in_phase(
-    names: &[Symbol],
-    states: &[Symbol],
-    (right, events): (&[Expr], &[FlowEvent]),
-    base: &Expr,
-    parameter: Symbol,
-) -> Result<Flow, ResponseError> {
-    let phase = fresh("theta", &names.iter().chain(states).copied().collect::<Vec<_>>());
-    let moment = Expr::divide(&Expr::from(phase), base)?;
-    let rate = |rate: &Expr| -> Result<Expr, ResponseError> {
-        Ok(Expr::divide(&in_phase(rate, Symbol::new("t"), &moment)?, base)?)
-    };
-    let right: Vec<Expr> = right.iter().map(rate).collect::<Result<_, _>>()?;
-    let moved = |expression: &Expr| in_phase(expression, Symbol::new("t"), &moment);
-    let event = |event: &FlowEvent| -> Result<FlowEvent, ResponseError> {
-        let after = event.after.iter().map(moved).collect::<Result<_, _>>()?;
-        Ok(FlowEvent { gap: moved(&event.gap)?, after, is_wall: event.is_wall })
-    };
-    let events: Vec<FlowEvent> = events.iter().map(event).collect::<Result<_, _>>()?;
-    Flow::new(states, phase, &right, parameter, &events)
 }
 
 /// Whether a motion passed backward in time is a motion as well: the accelerations do not change

@@ -330,8 +330,7 @@ impl CoupledProblem<'_> {
     fn elsewhere(&self, start: &Start, periods: Option<usize>) -> Option<Elsewhere> {
         let parameter = start.parameter;
         let duration = TAU / self.frequency_at(parameter) * periods.unwrap_or(1) as f64;
-        let path =
-            self.by_series(&start.unknowns, [0.0, duration], parameter)?;
+        let path = self.by_series(&start.unknowns, [0.0, duration], parameter)?;
         const SAMPLES: usize = 512;
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         let (mut cosine, mut sine) = (0.0, 0.0);

@@ -102,10 +102,10 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
         (true, false) => Some("--event"),
     };
     if let Some(option) = option
-        && (method != Method::HarmonicBalance || arguments.along.is_some())
+        && method != Method::HarmonicBalance
     {
         return Err(Failure::Usage(format!(
-            "{option}: motions with impacts or events are followed by shooting, in one parameter: leave out --method and --along"
+            "{option}: motions with impacts or events are followed by shooting: leave out --method"
         )));
     }
     if problem.resonance.is_some() && !(is_coupled && method == Method::MultipleScales) {
@@ -134,7 +134,6 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
     };
     let (parameter, range) = self::range("--vary", vary)?;
     let along = arguments.along.as_deref().or(problem.along.as_deref());
-    let along = along.map(|text| second_parameter(text, parameter, &equations)).transpose()?;
     let of = arguments.of.as_deref().or(problem.of.as_deref());
     // A parameter that the command line varies has no value of the file.
     let of_file = match arguments.vary {
@@ -145,7 +144,7 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
     let Supervision { interrupt, progress } = session::supervision();
     let mut question = ResponseRequest {
         of: of.map(|text| quantity(text, &equations)).transpose()?.flatten(),
-        along,
+        along: None,
         equations,
         walls,
         events,
@@ -159,6 +158,8 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
         interrupt,
         progress,
     };
+    question.along =
+        along.map(|text| second_parameter(text, parameter, &question.parameters())).transpose()?;
     let mut coupled = None;
     let slow = match (method, question.equations.oscillator()) {
         (Method::HarmonicBalance, _) => None,
@@ -246,11 +247,10 @@ fn is_free(equations: &CoupledEquations) -> bool {
 fn second_parameter(
     text: &str,
     parameter: Symbol,
-    equations: &Equations,
+    known: &[Symbol],
 ) -> Result<(Symbol, [f64; 2]), Failure> {
     let (name, [low, high]) = range("--along", text)?;
     let usage = |message: String| Err(Failure::Usage(format!("--along {text}: {message}")));
-    let known = equations.parameters();
     if name == parameter {
         return usage(format!("{name} varies already"));
     }

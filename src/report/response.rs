@@ -9,7 +9,7 @@ use super::trajectory::{event_in_words, wall_in_words};
 use super::{Block, Document};
 use crate::decimal::{decimal, significant};
 use crate::derivation::DerivationLine;
-use crate::expr::Expr;
+use crate::expr::{Expr, Function, Node};
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::continuation::BranchEnd;
 use crate::response::slow::{SlowEquations, SlowResponse};
@@ -366,7 +366,12 @@ fn counts(
     ))
 }
 
-/// The parts of a branch on which dry friction holds the motion for a time.
+/// Whether a part of an expression jumps.
+fn is_jump(part: &Expr) -> bool {
+    matches!(part.node(), Node::Function(Function::Sign | Function::Step, _))
+}
+
+/// The parts of a branch on which dry friction holds the motion for a time, or it rests on a wall.
 fn sticking(response: &ResponseDiagram, branch: &Branch) -> Option<Block<'static>> {
     /// Largest number of listed parts.
     const MOST: usize = 4;
@@ -397,6 +402,18 @@ fn sticking(response: &ResponseDiagram, branch: &Branch) -> Option<Block<'static
         }
         false => "",
     };
+    let question = &response.question;
+    let has_jump = |(left, right): &(Expr, Expr)| {
+        [left, right].into_iter().any(|side| side.unique_nodes().any(is_jump))
+    };
+    if !question.walls.is_empty() && !question.equations.sides().iter().any(has_jump) {
+        return Some(Block::Sentence(format!(
+            "It rests on a wall on its way {}{more}: for {} % of a period at most, after impacts that accumulate, infinitely many in a finite time, \
+             which are not counted below.",
+            stretches[..stretches.len().min(MOST)].join(", "),
+            significant(100.0 * longest, 3)
+        )));
+    }
     Some(Block::Sentence(format!(
         "It sticks on its way, held by friction, {}{more}: for {} % of a period at most.{place} There the points are those of the map of a \
          period, with the harmonics of the true motion.",

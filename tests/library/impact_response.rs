@@ -8,7 +8,8 @@ use lindstedt::event::StateEvent;
 use lindstedt::response::bifurcation::BifurcationKind;
 use lindstedt::response::continuation::BranchEnd;
 use lindstedt::response::{
-    Equations, ResponseDiagram, ResponseError, ResponseRequest, SteadyMotion, respond,
+    BifurcationCurve, Equations, ResponseDiagram, ResponseError, ResponseRequest, SteadyMotion,
+    respond,
 };
 use lindstedt::verify::Verdict;
 use lindstedt::wall::Wall;
@@ -113,10 +114,13 @@ fn one_impact_a_period_has_its_closed_form() {
 #[test]
 fn kicks_have_their_closed_form() {
     let request = question("x'' + x'/5 + x = 0", &[], ("w", [0.6, 2.3]), "p = 1/2");
-    let asked = with_events(&request, &["sin(w*t) > 0: x' = x' + p"]);
-    let found = respond(&asked).expect("a response");
-    assert_eq!((found.verdict, found.branches.len()), (Verdict::Pass, 1), "{:?}", found.error);
-    for point in &found.branches[0].points {
+    // Both conditions come true at the beginning of a period, the second one to rounding.
+    let points = ["sin(w*t) > 0: x' = x' + p", "cos(w*t - pi/2) > 0: x' = x' + p"].map(|event| {
+        let mut found = respond(&with_events(&request, &[event])).expect("a response");
+        assert_eq!((found.verdict, found.branches.len()), (Verdict::Pass, 1), "{:?}", found.error);
+        found.branches.remove(0).points
+    });
+    for point in points.iter().flatten() {
         let (beta, time) = (0.1_f64, 2.0 * PI / point.parameter);
         let rate = (1.0 - beta * beta).sqrt();
         let (sin, cos) = (rate * time).sin_cos();
@@ -148,6 +152,37 @@ fn kicks_have_their_closed_form() {
         assert!(points().all(|point| point.amplitude < 1e-7), "{periods}");
         assert_eq!(found.verdict, Verdict::Pass);
     }
+}
+
+/// A ball on a table A sin(t), on which it falls once a period: the impact moves through the beginning of the period
+/// along the branch, which is one all the same. Its fold is where A = pi (1 - e)/(1 + e), its period doubling where
+/// A^2 = (pi (1 - e)/(1 + e))^2 + (2 (1 + e^2)/(1 + e)^2)^2 (Guckenheimer and Holmes, section 2.4).
+#[test]
+fn an_impact_may_fall_on_the_beginning_of_a_period() {
+    let request = question("x'' + g = 0", &[("x > A*sin(t)", "4/5")], ("A", [0.34, 1.1]), "g = 1");
+    let found = respond(&request).expect("a response");
+    assert_eq!(found.verdict, Verdict::Pass, "{:?}", found.error);
+    let once: Vec<usize> = (0..found.branches.len())
+        .filter(|index| found.branches[*index].points[0].impacts == 1)
+        .collect();
+    assert_eq!(once.len(), 1, "one branch");
+    let branch = &found.branches[once[0]];
+    assert_eq!(branch.ends, [BranchEnd::Range; 2]);
+    for point in &branch.points {
+        // The product of both multipliers is e^2.
+        let [one, other] = point.multipliers.expect("multipliers");
+        assert!(((one * other).re - 0.64).abs() < 1e-9, "A = {}", point.parameter);
+    }
+    let change = |kind: BifurcationKind| {
+        let mut all = found.bifurcations.iter();
+        all.find(|change| change.kind == kind && change.branch == once[0])
+            .expect("a change")
+            .parameter
+    };
+    let fold = PI / 9.0;
+    let doubling = fold.hypot(2.0 * 1.64 / 3.24);
+    assert!((change(BifurcationKind::Fold) - fold).abs() < 1e-8);
+    assert!((change(BifurcationKind::PeriodDoubling) - doubling).abs() < 1e-7);
 }
 
 /// A reset that leads away from its condition lets it come true again in the same period: the motion is that of its
@@ -308,4 +343,88 @@ fn coupled_bodies_with_a_wall_between_them_are_followed() {
     let points = || found.branches.iter().flat_map(|branch| &branch.points);
     assert!(points().any(|point| point.impacts > 0));
     assert!(points().any(|point| point.stable == Some(true)));
+}
+
+/// A ball that does not bounce, on a table A sin(t) with A below and above g: it rests on the table, leaves it where
+/// A sin(t) = g, and rests again where it lands. Nothing of what was before is left: both multipliers are zero.
+#[test]
+fn a_ball_that_does_not_bounce_rests_and_leaves() {
+    let request = question("x'' + g = 0", &[("x > A*sin(t)", "0")], ("A", [0.9, 1.8]), "g = 1");
+    let found = respond(&request).expect("a response");
+    assert_eq!((found.verdict, found.branches.len()), (Verdict::Pass, 1), "{:?}", found.error);
+    let branch = &found.branches[0];
+    assert_eq!(branch.ends, [BranchEnd::Range; 2]);
+    for point in &branch.points {
+        let a = point.parameter;
+        // The gap at a time after the release, and where it is closed.
+        let release = if a > 1.0 { (1.0 / a).asin() } else { 0.0 };
+        let gap = |s: f64| 1.0 + a * release.cos() * s - 0.5 * s * s - a * (release + s).sin();
+        let grid = (0..=1000).map(|index| 2.0 * PI * f64::from(index) / 1000.0);
+        let highest = grid.max_by(|one, other| gap(*one).total_cmp(&gap(*other))).unwrap();
+        let (mut low, mut high) = (highest, 2.0 * PI);
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if gap(middle) > 0.0 { low = middle } else { high = middle }
+        }
+        let rests = if a > 1.0 { 1.0 - low / (2.0 * PI) } else { 1.0 };
+        if a <= 1.0 || a > 1.05 {
+            assert!((point.stuck - rests).abs() < 1e-6, "A = {a}: {} {rests}", point.stuck);
+        }
+        let [one, other] = point.multipliers.expect("multipliers");
+        assert!(one.norm().max(other.norm()) < 1e-6, "A = {a}: {one} {other}");
+        assert!(point.error.is_some_and(|error| error < 1e-7), "A = {a}: {:?}", point.error);
+    }
+    let grazing = found.bifurcations.iter().find(|change| change.kind == BifurcationKind::Grazing);
+    assert!((grazing.expect("the first release").parameter - 1.0).abs() < 1e-6);
+}
+
+/// Bifurcations of a ball on a table in the amplitude and in the coefficient of restitution: the fold is where
+/// A = pi (1 - e)/(1 + e), the period doubling where A^2 is more by (2 (1 + e^2)/(1 + e)^2)^2.
+#[test]
+fn bifurcations_with_walls_are_followed_in_two_parameters() {
+    let request =
+        question("x'' + g = 0", &[("x > A*sin(t)", "e")], ("A", [0.3, 1.15]), "g = 1, e = 4/5");
+    let along = Some(("e".into(), [0.78, 0.82]));
+    let found = respond(&ResponseRequest { along, ..request }).expect("a response");
+    let fold = |e: f64| PI * (1.0 - e) / (1.0 + e);
+    let doubling = |e: f64| fold(e).hypot(2.0 * (1.0 + e * e) / (1.0 + e).powi(2));
+    for (kind, expected) in [
+        (BifurcationKind::Fold, &fold as &dyn Fn(f64) -> f64),
+        (BifurcationKind::PeriodDoubling, &doubling),
+    ] {
+        let curves = found.curves.iter().filter(|curve| curve.kind == kind);
+        let is_expected = |curve: &&BifurcationCurve| {
+            let apart =
+                curve.points.iter().map(|point| (point.parameter - expected(point.along)).abs());
+            curve.points.len() > 5 && apart.fold(0.0, f64::max) < 1e-6
+        };
+        assert_eq!(curves.filter(is_expected).count(), 1, "{kind:?}: {:?}", found.curves);
+    }
+    assert!(found.stable_motions.is_some());
+}
+
+/// The curve on which two coupled bodies touch: the distance between them is that of one oscillator with the
+/// frequency 3^(1/2), whose amplitude is that of the wall.
+#[test]
+fn a_grazing_is_followed_in_two_parameters() {
+    let asked = question(
+        "x'' + x'/10 + 2*x - y = F*cos(w*t); y'' + y'/10 + 2*y - x = 0",
+        &[("x - y < 0.3", "1/2")],
+        ("F", [0.3, 0.5]),
+        "w = 6/5",
+    );
+    let found = respond(&ResponseRequest { along: Some(("w".into(), [1.15, 1.25])), ..asked });
+    let found = found.expect("a response");
+    let grazing = found.curves.iter().find(|curve| curve.kind == BifurcationKind::Grazing);
+    let grazing = grazing.expect("a curve");
+    assert!(grazing.points.len() > 5);
+    for point in &grazing.points {
+        let w = point.along;
+        let expected = 0.3 * (3.0 - w * w).hypot(0.1 * w);
+        assert!(
+            (point.parameter - expected).abs() < 1e-8,
+            "w = {w}: {} {expected}",
+            point.parameter
+        );
+    }
 }

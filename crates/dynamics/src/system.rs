@@ -250,6 +250,8 @@ pub enum PathEnd {
     PassesWall,
     /// Events follow each other faster than they can be told apart.
     EventsAccumulate,
+    /// An event sets a state to no number, or puts the motion behind a rigid wall.
+    NoReset,
     /// The run was interrupted.
     Interrupted,
 }

@@ -456,8 +456,11 @@ impl TrajectoryRequest {
                     (Ok(_), Some(Err(error))) => Err(error),
                     _ => Ok(()),
                 };
-                if let Err(error) = advanced {
-                    *run = Err(error);
+                match (run.as_mut(), advanced) {
+                    // The motion has come this far, and the others go on.
+                    (Ok(run), Err(error)) if error.is_of_reset() => run.end(PathEnd::NoReset),
+                    (_, Err(error)) => *run = Err(error),
+                    (_, Ok(())) => {}
                 }
             }
         }
@@ -910,6 +913,9 @@ pub fn in_words(end: PathEnd) -> &'static str {
         }
         PathEnd::EventsAccumulate => {
             "where events follow each other ever faster: infinitely many take a finite time, and a motion that then rests needs a rigid wall"
+        }
+        PathEnd::NoReset => {
+            "where an event sets a state to a value that is not a number, or behind a wall"
         }
         PathEnd::Overflow => "where a state leaves the range of numbers, 1e300",
         PathEnd::Sticks => {

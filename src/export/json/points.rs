@@ -182,7 +182,7 @@ impl MotionPoint {
 
     /// The motion at these values of what varies; `None` if a number is none.
     pub fn read(&self, values: Vec<f64>) -> Option<SweptMotion> {
-        const ENDS: [PathEnd; 9] = [
+        const ENDS: [PathEnd; 10] = [
             PathEnd::Reached,
             PathEnd::Event(0),
             PathEnd::StepLimit,
@@ -191,6 +191,7 @@ impl MotionPoint {
             PathEnd::Sticks,
             PathEnd::PassesWall,
             PathEnd::EventsAccumulate,
+            PathEnd::NoReset,
             PathEnd::Interrupted,
         ];
         let crossing = |(time, state): &(AnyNumber, Vec<AnyNumber>)| {

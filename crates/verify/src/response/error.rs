@@ -154,8 +154,11 @@ pub enum ResponseError {
         "no motion was found, because the forces that hold it on `{0} = 0` and on other jumps at once are not determined"
     )]
     UndeterminedFriction(String),
-    /// No motion could be followed over a period because it comes to rest on a wall.
-    #[error("no motion was found that does not come to rest on a wall within a period")]
+    /// No motion could be followed over a period because it rests on two walls at once, or on one where forces
+    /// jump.
+    #[error(
+        "no motion was found that does not rest on two walls at once, or on a wall while a force jumps"
+    )]
     RestsOnWall,
     /// No motion could be followed over a period because events accumulate, or take place at once.
     #[error(

@@ -149,9 +149,9 @@ pub struct SteadyMotion {
     /// The multipliers, the larger first; of a self-excited motion the one that decides, then the
     /// one along the motion, which is 1.
     pub multipliers: Option<[Complex<f64>; 2]>,
-    /// The part of a period in which it sticks, held by dry friction.
+    /// The part of a period in which it sticks, held by dry friction, or rests on a wall.
     pub stuck: f64,
-    /// The number of impacts on walls in a period.
+    /// The number of impacts on walls in a period, without those that accumulate before a rest.
     pub impacts: usize,
     /// The number of other events in a period.
     pub events: usize,

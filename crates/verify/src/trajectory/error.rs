@@ -100,6 +100,13 @@ pub enum TrajectoryError {
     Expression(#[from] ExprError),
 }
 
+impl TrajectoryError {
+    /// Whether an event on the way has no state behind it.
+    pub(super) fn is_of_reset(&self) -> bool {
+        matches!(self, Self::ResetUndefined { .. } | Self::EventBehindWall { .. })
+    }
+}
+
 /// Names in back quotes, with commas between them.
 pub(super) fn names(symbols: &[Symbol]) -> String {
     let names: Vec<String> = symbols.iter().map(|symbol| format!("`{symbol}`")).collect();

@@ -132,6 +132,11 @@ impl<'a> EventRun<'a> {
         Ok(())
     }
 
+    /// Ends the motion where it is.
+    pub(super) fn end(&mut self, reason: PathEnd) {
+        self.reason = Some(reason);
+    }
+
     /// Whether it has ended.
     pub(super) fn has_ended(&self) -> bool {
         self.reason.is_some()

@@ -85,7 +85,8 @@ pub fn simulate_primary(
             | PathEnd::Overflow
             | PathEnd::Sticks
             | PathEnd::PassesWall
-            | PathEnd::EventsAccumulate => {
+            | PathEnd::EventsAccumulate
+            | PathEnd::NoReset => {
                 break PrimaryStop::Singular;
             }
         }

@@ -1,5 +1,7 @@
 //! Branches of orbits: through starts, through crossings with known ones, each once.
 
+use std::f64::consts::TAU;
+
 use nalgebra::DVector;
 use num_complex::Complex;
 
@@ -24,12 +26,34 @@ pub(super) struct OrbitBranch {
     pub(super) anchor: Anchor,
 }
 
+impl OrbitBranch {
+    /// The stretches whose orbits begin at one phase.
+    pub(super) fn runs(&self) -> impl Iterator<Item = &[Orbit]> {
+        self.orbits.chunk_by(|one, other| one.kept.section == other.kept.section)
+    }
+
+    /// The orbits without those that are there a second time, at another phase.
+    pub(super) fn distinct(&self) -> impl Iterator<Item = &Orbit> {
+        let is_again =
+            |index: usize| self.orbits[index - 1].kept.section != self.orbits[index].kept.section;
+        let all = self.orbits.iter().enumerate();
+        all.filter(move |(index, _)| *index == 0 || !is_again(*index)).map(|(_, orbit)| orbit)
+    }
+
+    /// The neighbouring orbits, each two of which begin at one phase.
+    pub(super) fn pairs(&self) -> impl Iterator<Item = &[Orbit]> {
+        self.runs().flat_map(|run| run.windows(2))
+    }
+}
+
 /// A motion from which a branch may start.
 #[derive(Clone, Debug)]
 pub(super) struct Start {
     pub(super) parameter: f64,
     /// The state, then the period of a cycle.
     pub(super) unknowns: Vec<f64>,
+    /// The phase of the drive at which that is the state.
+    pub(super) section: f64,
 }
 
 /// All branches that are known, and the travel of the largest motions on them.
@@ -95,6 +119,12 @@ impl CoupledProblem<'_> {
         near(&guess, &first.kept.travel)
     }
 
+    /// The orbit near a start of a driven motion, at a phase without events nearby.
+    pub(super) fn driven_orbit_near(&self, start: &Start, scale: &[f64]) -> Option<Orbit> {
+        let start = self.away_from_events(start, scale);
+        self.orbit_near(&start, scale, Anchor::at_phase(start.section))
+    }
+
     /// Follows the branch through a start, unless it is known.
     pub(super) fn follow_from(&self, start: &Start, known: &mut Known) {
         if self.is_done(known) {
@@ -105,7 +135,7 @@ impl CoupledProblem<'_> {
         const ENORMOUS: f64 = 100.0;
         let n = self.coordinates;
         let extent = |travel: &[f64]| travel.iter().take(n).copied().fold(0.0, f64::max);
-        let Some(orbit) = self.orbit_near(start, &known.scale, Anchor::NONE) else { return };
+        let Some(orbit) = self.driven_orbit_near(start, &known.scale) else { return };
         let largest = extent(&known.scale);
         if self.is_at_rest(&orbit) || self.creeps(&orbit) {
             return;
@@ -125,11 +155,7 @@ impl CoupledProblem<'_> {
         const LARGER: f64 = 3.0;
         let n = self.coordinates;
         let extent = |travel: &[f64]| travel.iter().take(n).copied().fold(0.0, f64::max);
-        let follow = |orbit: Orbit, scale: &[f64]| {
-            self.with_orbits(scale, anchor, |orbits| {
-                self.branch_through(orbits, orbit, scale, anchor)
-            })
-        };
+        let follow = |orbit: Orbit, scale: &[f64]| self.branch_through(orbit, scale, anchor);
         let scale = known.scale_with(&orbit.kept.travel);
         let branch = follow(orbit, &scale);
         let largest = branch
@@ -256,7 +282,7 @@ impl CoupledProblem<'_> {
     /// Whether an orbit is about the mirror image of another one near it, or that orbit shifted by
     /// periods of the drive; `None` if it is neither.
     fn image_of(&self, from: &Orbit, to: &Orbit, scale: &[f64]) -> Option<bool> {
-        let [shifted, mirrored] = self.images(from, scale)?;
+        let [shifted, mirrored] = self.images(from, to.kept.section, scale)?;
         let sizes = self.state_sizes(&from.kept.travel, scale);
         let apart = |one: &Vec<f64>| {
             let each = one.iter().zip(to.unknowns.iter()).zip(&sizes);
@@ -288,25 +314,25 @@ impl CoupledProblem<'_> {
                 Some(if side == 0 { orbit.reversed() } else { orbit })
             })
             .collect();
-        self.with_orbits(scale, branch.anchor, |orbits| {
-            let back = |pair: &[Orbit]| {
-                let [from, to] = pair else { return None };
-                let inside = from.parameter().clamp(low, high);
-                let part = (inside - from.parameter()) / (to.parameter() - from.parameter());
-                if from.parameter() == inside || !(0.0..=1.0).contains(&part) {
-                    return None;
-                }
-                let guess = &from.unknowns + (&to.unknowns - &from.unknowns) * part;
-                let guess = guess.rows(0, guess.len() - 1).into_owned();
-                orbits.orbit_at(&guess, inside, &(orbits.sizes)(from))
-            };
-            let mut found = Vec::new();
-            for start in outward {
-                let (beyond, _) = orbits.follow(start, &limits, &|_| false);
-                found.extend(beyond.windows(2).find_map(back));
+        let back = |orbits: &Orbits, pair: &[Orbit]| {
+            let [from, to] = pair else { return None };
+            let inside = from.parameter().clamp(low, high);
+            let part = (inside - from.parameter()) / (to.parameter() - from.parameter());
+            if from.parameter() == inside || !(0.0..=1.0).contains(&part) {
+                return None;
             }
-            found
-        })
+            let guess = &from.unknowns + (&to.unknowns - &from.unknowns) * part;
+            let guess = guess.rows(0, guess.len() - 1).into_owned();
+            orbits.orbit_at(&guess, inside, &(orbits.sizes)(from))
+        };
+        let mut found = Vec::new();
+        for start in outward {
+            self.with_orbits(scale, branch.anchor.of_orbit(&start), |orbits| {
+                let (beyond, _) = orbits.follow(start, &limits, &|_| false);
+                found.extend(beyond.windows(2).find_map(|pair| back(orbits, pair)));
+            });
+        }
+        found
     }
 
     /// Whether an orbit lies on a known branch; marks the branch if it is a mirror image.
@@ -319,13 +345,7 @@ impl CoupledProblem<'_> {
     }
 
     /// The branch through an orbit, both ways, in the range of the request.
-    fn branch_through(
-        &self,
-        orbits: &Orbits,
-        orbit: Orbit,
-        scale: &[f64],
-        anchor: Anchor,
-    ) -> OrbitBranch {
+    fn branch_through(&self, orbit: Orbit, scale: &[f64], anchor: Anchor) -> OrbitBranch {
         const ENORMOUS: f64 = 1e4;
         let n = self.coordinates;
         let extent = |travel: &[f64]| travel[..n].iter().copied().fold(0.0, f64::max);
@@ -353,7 +373,17 @@ impl CoupledProblem<'_> {
                 || is_cycle && extent < least
                 || self.is_exhausted()
         };
-        let (points, ends) = orbits.branch_through(orbit, &limits, &refused);
+        let follow = |orbit| self.follow_past_events(orbit, &limits, scale, anchor, &refused);
+        let (mut points, end) = follow(orbit.clone());
+        let ends = match end {
+            OrbitBranchEnd::Closed => [end; 2],
+            end => {
+                let (before, first) = follow(orbit.reversed());
+                let before = before.into_iter().skip(1).rev().map(Orbit::reversed);
+                points = before.chain(points).collect();
+                [first, end]
+            }
+        };
         let last = [points.first(), points.last()];
         let at_wall = |side: usize| last[side].and_then(|orbit| self.end_at_wall(orbit));
         let ends = [0, 1].map(|side| match ends[side] {
@@ -399,22 +429,23 @@ impl CoupledProblem<'_> {
         let flow = self.in_phase.as_ref().unwrap_or(&self.in_time);
         let sizes = self.state_sizes(&orbit.kept.travel, &[]);
         let start = &orbit.start()[..self.states.len()];
-        if flow.least_gap(start, orbit.parameter(), &sizes) < NEAR * NEAR {
+        if flow.least_gap(start, orbit.kept.section, orbit.parameter(), &sizes) < NEAR * NEAR {
             return Some(BranchEnd::ImpactAtStart);
         }
-        if orbit.kept.encounters.counts() != [0, 0] {
+        if orbit.kept.encounters.counts() != [0; 3] {
             return (orbit.kept.encounters.slowest < SLOW).then_some(BranchEnd::Grazing);
         }
         const PLACES: usize = 256;
         let period = std::f64::consts::TAU / self.frequency_of(orbit);
-        let path = self.by_series(start, period, orbit.parameter())?;
+        let begin = self.time_of_section(orbit);
+        let path = self.by_series(start, [begin, period], orbit.parameter())?;
         let numbers = [(self.question.parameter, orbit.parameter())];
         let is_near = |index: usize| {
             let time = period * index as f64 / PLACES as f64;
             let Some(states) = path.states_at(time) else { return false };
             let mut values: std::collections::BTreeMap<_, _> =
                 self.states.iter().copied().zip(states.iter().copied()).chain(numbers).collect();
-            values.insert(crate::symbol::Symbol::new("t"), time);
+            values.insert(crate::symbol::Symbol::new("t"), begin + time);
             let size = sizes[..self.coordinates].iter().copied().fold(0.0, f64::max);
             let is_near =
                 |gap: &Expr| gap.evaluate(&values).is_ok_and(|gap| gap.abs() < NEAR * size);
@@ -425,11 +456,13 @@ impl CoupledProblem<'_> {
     }
 
     /// The start of an orbit, and that behind an event at its beginning.
-    fn starts_at_wall(&self, orbit: &Orbit) -> Vec<Vec<f64>> {
+    fn starts_at_wall(&self, orbit: &Orbit) -> Vec<Start> {
         let flow = self.in_phase.as_ref().unwrap_or(&self.in_time);
         let start = orbit.start()[..self.states.len()].to_vec();
-        let behind = flow.behind_event(&start, orbit.parameter());
-        [Some(start), behind].into_iter().flatten().collect()
+        let (section, parameter) = (orbit.kept.section, orbit.parameter());
+        let behind = flow.behind_event(&start, section, parameter);
+        let all = [Some(start), behind].into_iter().flatten();
+        all.map(|unknowns| Start { parameter, unknowns, section }).collect()
     }
 
     /// Whether the mirror image of every wall is a wall, so that the mirror image of a motion is one; with
@@ -465,8 +498,8 @@ impl CoupledProblem<'_> {
                 for part in BESIDE {
                     let parameter = orbit.parameter() + part * (high - low);
                     if (low..=high).contains(&parameter) {
-                        for unknowns in self.starts_at_wall(orbit) {
-                            self.follow_from(&Start { parameter, unknowns }, known);
+                        for start in self.starts_at_wall(orbit) {
+                            self.follow_from(&Start { parameter, ..start }, known);
                         }
                     }
                 }
@@ -480,13 +513,13 @@ impl CoupledProblem<'_> {
         let mut index = 0;
         while index < known.branches.len() {
             let branch = known.branches[index].clone();
-            for pair in branch.orbits.windows(2) {
+            for pair in branch.pairs() {
                 let [from, to] = pair else { continue };
                 if from.orientation == to.orientation || self.is_done(known) {
                     continue;
                 }
                 let scale = known.scale.clone();
-                let beside = self.with_orbits(&scale, branch.anchor, |orbits| {
+                let beside = self.with_orbits(&scale, branch.anchor.of_orbit(from), |orbits| {
                     let found = changes_between(self, orbits, from, to);
                     let mut crossings =
                         found.into_iter().filter(|(kind, _)| *kind == BifurcationKind::BranchPoint);
@@ -511,12 +544,10 @@ impl CoupledProblem<'_> {
         self.push_branch(orbit, anchor, known);
     }
 
-    /// The states in which an orbit passes the beginning of each drive period, and those of its
-    /// mirror images, half a period of the drive later. A motion that nothing drives may begin
+    /// The states in which an orbit passes a phase in each drive period, and those of its mirror images, half a period of the drive later. A motion that nothing drives may begin
     /// anywhere on itself: its only image is the mirrored one.
-    fn images(&self, orbit: &Orbit, scale: &[f64]) -> Option<[Vec<Vec<f64>>; 2]> {
-        use std::f64::consts::TAU;
-        let start = orbit.unknowns.as_slice()[..self.states.len()].to_vec();
+    fn images(&self, orbit: &Orbit, section: f64, scale: &[f64]) -> Option<[Vec<Vec<f64>>; 2]> {
+        let start = self.state_at_phase(orbit, section, scale)?;
         let negative = |state: Vec<f64>| state.into_iter().map(|value| -value).collect();
         match self.kind {
             Kind::Driven(_) => {
@@ -524,7 +555,7 @@ impl CoupledProblem<'_> {
                 let half = TAU / (2 * periods) as f64;
                 let mut states = vec![start];
                 for index in 1..2 * periods {
-                    let phases = [index - 1, index].map(|index| half * index as f64);
+                    let phases = [index - 1, index].map(|index| section + half * index as f64);
                     let next = self.after(states.last()?, phases, orbit.parameter(), scale)?;
                     states.push(next);
                 }
@@ -553,7 +584,8 @@ impl CoupledProblem<'_> {
         let n = self.states.len();
         let period = std::f64::consts::TAU / self.frequency_of(orbit);
         let start = &orbit.unknowns.as_slice()[..n];
-        let Some(path) = self.by_series(start, period, orbit.parameter()) else { return false };
+        let times = [self.time_of_section(orbit), period];
+        let Some(path) = self.by_series(start, times, orbit.parameter()) else { return false };
         let corner = |index: usize| -> Option<DVector<f64>> {
             let states = path.states_at(period * index as f64 / CORNERS as f64)?;
             let away = states.iter().zip(state).zip(sizes);
@@ -577,11 +609,17 @@ impl CoupledProblem<'_> {
         const NEAR: f64 = 0.25;
         const SAME: f64 = 1e-5;
         let (n, parameter) = (self.states.len(), orbit.parameter());
-        let [shifted, mirrored] = self.images(orbit, &known.scale)?;
+        // The images of the orbit, at the phases at which known ones begin.
+        let mut images: Vec<(f64, Option<[Vec<Vec<f64>>; 2]>)> = Vec::new();
         let sizes = self.state_sizes(&orbit.kept.travel, &known.scale);
         let apart = |one: &[f64], other: &[f64]| {
-            let each = one.iter().zip(other).zip(&sizes);
-            each.map(|((one, other), size)| ((one - other) / size).abs()).fold(0.0, f64::max)
+            let each = one.iter().zip(other).zip(&sizes).enumerate();
+            let each = each.map(|(index, ((one, other), size))| {
+                let way = one - other;
+                let turns = if self.angles.contains(&index) { (way / TAU).round() } else { 0.0 };
+                ((way - TAU * turns) / size).abs()
+            });
+            each.fold(0.0, f64::max)
         };
         // Cycles may begin anywhere on themselves: they are compared by travel and period.
         let by_travel = matches!(self.kind, Kind::SelfExcited | Kind::Free);
@@ -589,7 +627,7 @@ impl CoupledProblem<'_> {
         let signs: &[f64] =
             if orbit.kept.encounters.places.is_empty() { &[1.0] } else { &[1.0, -1.0] };
         for (branch, path) in known.branches.iter().enumerate() {
-            let pairs = path.orbits.windows(2);
+            let pairs = path.pairs();
             for (pair, sign) in pairs.flat_map(|pair| signs.iter().map(move |sign| (pair, *sign))) {
                 let [from, to] = pair else { continue };
                 let way = to.parameter() - from.parameter();
@@ -597,6 +635,13 @@ impl CoupledProblem<'_> {
                 if !(-1e-9..=1.0 + 1e-9).contains(&part) {
                     continue;
                 }
+                let section = from.kept.section;
+                let is_here = |(own, _): &&(f64, _)| *own == section;
+                if !images.iter().any(|own| is_here(&own)) {
+                    images.push((section, self.images(orbit, section, &known.scale)));
+                }
+                let here = images.iter().find(is_here).and_then(|(_, images)| images.as_ref());
+                let Some([shifted, mirrored]) = here else { continue };
                 let mut guess = &from.unknowns + (&to.unknowns - &from.unknowns) * part;
                 let count = guess.len() - 1;
                 // Where dry friction holds a motion it may hold it at another place.
@@ -619,14 +664,14 @@ impl CoupledProblem<'_> {
                     .collect();
                 let candidates = match by_travel {
                     true => apart(&mixed, &orbit.kept.travel) <= NEAR,
-                    false => is_near(&shifted) || is_near(&mirrored),
+                    false => is_near(shifted) || is_near(mirrored),
                 };
                 if !candidates {
                     continue;
                 }
                 let all = self.sizes(&mixed, &known.scale, &guess);
                 let start = guess.rows(0, count).into_owned();
-                let solved = self.with_orbits(&known.scale, path.anchor, |orbits| {
+                let solved = self.with_orbits(&known.scale, path.anchor.of_orbit(from), |orbits| {
                     orbits.orbit_at(&start, parameter, &all)
                 });
                 let Some(solved) = solved else { continue };
@@ -649,10 +694,10 @@ impl CoupledProblem<'_> {
                     }
                     continue;
                 }
-                if is_one(&shifted) {
+                if is_one(shifted) {
                     return Some(Found { branch, mirrored: false });
                 }
-                if is_one(&mirrored) {
+                if is_one(mirrored) {
                     return Some(Found { branch, mirrored: true });
                 }
             }

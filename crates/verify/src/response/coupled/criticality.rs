@@ -75,7 +75,8 @@ impl CoupledProblem<'_> {
         // Both tangents lead along the branch.
         let forward = pair[0].parameter < pair[1].parameter;
         let orbit = |point: &SteadyMotion| {
-            let start = Start { parameter: point.parameter, unknowns: point.start.to_vec() };
+            let start =
+                Start { parameter: point.parameter, unknowns: point.start.to_vec(), section: 0.0 };
             let orbit = self.orbit_near(&start, scale, Anchor::NONE)?;
             Some(if forward { orbit } else { orbit.reversed() })
         };
@@ -209,6 +210,8 @@ struct Section<'a> {
     problem: &'a CoupledProblem<'a>,
     parameter: f64,
     start: DVector<f64>,
+    /// The time at the start.
+    begin: f64,
     period: f64,
     sizes: DVector<f64>,
     /// The directions of the section, in columns.
@@ -236,7 +239,8 @@ impl<'a> Section<'a> {
             Kind::Free => return None,
         };
         let period = std::f64::consts::TAU / problem.frequency_of(at);
-        Some(Self { problem, parameter, start, period, sizes, basis, across })
+        let begin = problem.time_of_section(at);
+        Some(Self { problem, parameter, start, begin, period, sizes, basis, across })
     }
 
     /// The place after a period, or after one turn.
@@ -248,7 +252,8 @@ impl<'a> Section<'a> {
         let away =
             |end: Vec<f64>| (DVector::from_vec(end) - &self.start).component_div(&self.sizes);
         let duration = self.period * if self.across.is_some() { LONGEST } else { 1.0 };
-        let path = self.problem.by_series(begin.as_slice(), duration, self.parameter)?;
+        let times = [self.begin, duration];
+        let path = self.problem.by_series(begin.as_slice(), times, self.parameter)?;
         let mut time = self.period;
         if let Some(across) = &self.across {
             for _ in 0..MOST {

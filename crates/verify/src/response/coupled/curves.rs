@@ -5,6 +5,7 @@
 //! P(y; p, q) = y,   s(M) = 0        unknowns y, p; q
 //! fold               s = det(M - 1)
 //! period doubling    s = det(M + 1)
+//! grazing            g = dg/dt = 0 at some phase (grazing.rs)
 //! Neimark-Sacker     s = det(M o M - 1),    o: the bialternate product, with the products of two multipliers
 //! ```
 //!
@@ -20,11 +21,13 @@ use nalgebra::{DMatrix, DVector};
 use super::branches::Known;
 use super::changes::changes_between;
 use super::flow::Flow;
-use super::problem::{Anchor, CoupledProblem, Kind, flow_in_phase};
+use super::problem::{CoupledProblem, Kind};
+use super::state_jumps::{StateJumps, drive_of, flow_in_phase};
 use crate::coupled::CoupledEquations;
 use crate::expr::Expr;
 use crate::numeric::orbit_branch::{OrbitBranchLimits, OrbitEquations, OrbitPoint, PeriodImage};
 use crate::response::bifurcation::BifurcationKind;
+use crate::response::continuation::BranchEnd;
 use crate::response::{
     BifurcationCurve, BifurcationCurvePoint, LONGEST_STEP, ResponseError, ResponseRequest,
     StableMotions,
@@ -38,28 +41,42 @@ const COUNTED: [usize; 2] = [41, 15];
 const MOST: usize = 200;
 
 /// The map of a period with a second parameter, as one more state that does not change.
-struct TwoParameters<'a> {
-    problem: &'a CoupledProblem<'a>,
-    flow: Flow,
-    scale: &'a [f64],
+pub(super) struct TwoParameters<'a> {
+    pub(super) problem: &'a CoupledProblem<'a>,
+    pub(super) flow: Flow,
+    pub(super) scale: &'a [f64],
+}
+
+/// A place in the plane of both parameters from which a curve is followed: the state of the motion there at
+/// a phase, and both parameters.
+pub(super) struct CurveStart<'a> {
+    pub(super) state: &'a [f64],
+    pub(super) section: f64,
+    pub(super) parameters: [f64; 2],
 }
 
 /// The images and derivatives at a state with both parameters.
-struct Image {
-    end: DVector<f64>,
-    monodromy: DMatrix<f64>,
-    by_parameter: DVector<f64>,
-    by_second: DVector<f64>,
-    travel: Vec<f64>,
+pub(super) struct Image {
+    pub(super) end: DVector<f64>,
+    pub(super) monodromy: DMatrix<f64>,
+    pub(super) by_parameter: DVector<f64>,
+    pub(super) by_second: DVector<f64>,
+    pub(super) travel: Vec<f64>,
 }
 
 impl TwoParameters<'_> {
-    fn image(&self, start: &[f64], parameter: f64, second: f64) -> Option<Image> {
+    /// The image after a period of a state at a phase.
+    pub(super) fn image(
+        &self,
+        start: &[f64],
+        section: f64,
+        [parameter, second]: [f64; 2],
+    ) -> Option<Image> {
         let n = self.problem.states.len();
         let mut sizes = self.problem.state_sizes(&self.scale[..n], self.scale);
         sizes.push(second.abs().max(1e-12));
         let begin: Vec<f64> = start.iter().copied().chain([second]).collect();
-        let image = self.flow.image(&begin, TAU, parameter, &sizes)?;
+        let image = self.flow.image(&begin, [section, section + TAU], parameter, &sizes)?;
         Some(Image {
             end: image.end.rows(0, n).into_owned(),
             monodromy: image.by_start.view((0, 0), (n, n)).into_owned(),
@@ -113,23 +130,33 @@ impl CoupledProblem<'_> {
             .iter()
             .map(|rate| rate.substitute_all(&values))
             .collect::<Result<_, _>>()?;
-        let frequency = crate::response::driven::drive_frequency(&right, &self.states)?;
-        let periods = Expr::from(i64::try_from(self.question.periods).unwrap_or(1));
-        let base = Expr::divide(&frequency, &periods)?;
+        let mut events = StateJumps::new(self.question, equations, &values)?.flow_events;
+        let (_, base) = drive_of(&right, &events, &self.states, self.question.periods)?;
         right.push(Expr::zero());
+        for event in &mut events {
+            event.after.push(Expr::from(second));
+        }
         let states: Vec<Symbol> = self.states.iter().copied().chain([second]).collect();
         let names: Vec<Symbol> =
             states.iter().copied().chain([self.question.parameter, Symbol::new("t")]).collect();
-        let flow = flow_in_phase(&names, &states, (&right, &[]), &base, self.question.parameter)?
-            .until(self.question.interrupt);
+        let flow =
+            flow_in_phase(&names, &states, (&right, &events), &base, self.question.parameter)?
+                .until(self.question.interrupt);
         let two = TwoParameters { problem: self, flow, scale: &known.scale };
         let mut curves: Vec<BifurcationCurve> = Vec::new();
         for branch in &known.branches {
-            let found = self.with_orbits(&known.scale, Anchor::NONE, |orbits| {
-                let pairs = branch.orbits.windows(2);
-                pairs.flat_map(|pair| changes_between(self, orbits, &pair[0], &pair[1])).collect()
+            let found = branch.runs().flat_map(|run| {
+                self.with_orbits(&known.scale, branch.anchor.of_orbit(&run[0]), |orbits| {
+                    let pairs = run.windows(2);
+                    let found = pairs.map(|pair| changes_between(self, orbits, &pair[0], &pair[1]));
+                    found.flatten().collect::<Vec<_>>()
+                })
             });
-            let found: Vec<_> = found;
+            let ends = [branch.orbits.first(), branch.orbits.last()].into_iter().zip(branch.ends);
+            let grazings = ends.filter(|(_, end)| *end == BranchEnd::Grazing);
+            let grazings = grazings.filter_map(|(orbit, _)| orbit);
+            let grazings = grazings.map(|orbit| (BifurcationKind::Grazing, orbit.clone()));
+            let found: Vec<_> = found.chain(grazings).collect();
             for (kind, orbit) in found {
                 if kind == BifurcationKind::BranchPoint || self.question.interrupt.is_requested() {
                     continue;
@@ -138,16 +165,22 @@ impl CoupledProblem<'_> {
                 if curves.iter().any(|curve| self.is_on(curve, kind, place, range)) {
                     continue;
                 }
-                let start = DVector::from_column_slice(&orbit.unknowns.as_slice()[..n]);
-                let start = start.push(orbit.parameter());
-                let points = two.curve(kind, &start, at, range);
+                let start = CurveStart {
+                    state: &orbit.start()[..n],
+                    section: orbit.kept.section,
+                    parameters: place,
+                };
+                let points = match kind {
+                    BifurcationKind::Grazing => two.grazing_curve(&orbit, at, range),
+                    _ => two.curve(kind, &start, range),
+                };
                 if points.len() > 1 {
                     let peak = |point: &OrbitPoint<Vec<f64>>| self.shown_travel(&point.kept);
                     let points = points
                         .iter()
                         .map(|point| BifurcationCurvePoint {
-                            parameter: point.unknowns[n],
-                            along: point.unknowns[n + 1],
+                            parameter: point.start()[point.start().len() - 1],
+                            along: point.parameter(),
                             peak: peak(point),
                         })
                         .collect();
@@ -203,17 +236,17 @@ impl TwoParameters<'_> {
     fn curve(
         &self,
         kind: BifurcationKind,
-        start: &DVector<f64>,
-        second: f64,
+        start: &CurveStart,
         range: [f64; 2],
     ) -> Vec<OrbitPoint<Vec<f64>>> {
+        let section = start.section;
         let n = self.problem.states.len();
         let [low, high] = self.problem.question.range;
         let states = self.problem.state_sizes(&self.scale[..n], self.scale);
         let mut all = states.clone();
         all.extend([high - low, range[1] - range[0]]);
         let value = |unknowns: &[f64]| {
-            let image = self.image(&unknowns[..n], unknowns[n], unknowns[n + 1])?;
+            let image = self.image(&unknowns[..n], section, [unknowns[n], unknowns[n + 1]])?;
             Some(test(kind, &image.monodromy))
         };
         // The gradient of the test function by all unknowns, by central differences.
@@ -229,7 +262,7 @@ impl TwoParameters<'_> {
             };
             (0..n + 2).map(slope).collect()
         };
-        let first: Vec<f64> = start.iter().copied().chain([second]).collect();
+        let first: Vec<f64> = start.state.iter().copied().chain(start.parameters).collect();
         let Some(slopes) = gradient(&first) else { return vec![] };
         let steep = slopes.iter().zip(&all).map(|(slope, size)| (slope * size).abs());
         let steep = steep.fold(0.0, f64::max);
@@ -240,7 +273,7 @@ impl TwoParameters<'_> {
         let unit = (high - low) / steep;
         let map = |start: &DVector<f64>, second: f64| {
             let unknowns: Vec<f64> = start.iter().copied().chain([second]).collect();
-            let image = self.image(&unknowns[..n], unknowns[n], second)?;
+            let image = self.image(&unknowns[..n], section, [unknowns[n], second])?;
             let slopes = gradient(&unknowns)?;
             let mut by_start = image.monodromy.clone().resize(n + 1, n + 1, 0.0);
             by_start.view_mut((0, n), (n, 1)).copy_from(&image.by_parameter);
@@ -258,11 +291,12 @@ impl TwoParameters<'_> {
         let sizes = DVector::from_vec(all.clone());
         let equations = OrbitEquations {
             map: &map,
-            smooth: true,
+            smooth: !self.flow.jumps(),
             keep: &|_, image: &PeriodImage<Vec<f64>>| image.path.clone(),
             sizes: &|_| sizes.clone(),
         };
-        let Some(point) = equations.orbit_at(start, second, &sizes) else { return vec![] };
+        let (guess, second) = (DVector::from_column_slice(&first[..=n]), first[n + 1]);
+        let Some(point) = equations.orbit_at(&guess, second, &sizes) else { return vec![] };
         let limits = OrbitBranchLimits {
             range,
             longest: LONGEST_STEP,

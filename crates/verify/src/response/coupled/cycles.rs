@@ -96,7 +96,7 @@ impl CoupledProblem<'_> {
         }
         let mut unknowns = orbit.unknowns.as_slice()[..=n].to_vec();
         unknowns[n] /= turns as f64;
-        self.orbit_near(&Start { parameter: start.parameter, unknowns }, scale, anchor)
+        self.orbit_near(&Start { unknowns, ..*start }, scale, anchor)
     }
 
     /// The number of times that an orbit goes round the same cycle in its period.
@@ -182,7 +182,7 @@ impl CoupledProblem<'_> {
             (if largest > 0.0 { largest } else { 1.0 }) * 0.1 * 30.0_f64.powf(spread(index, 0));
         let start: Vec<f64> = (0..n).map(|k| size * (2.0 * spread(index, k + 1) - 1.0)).collect();
         let settled = self.after(&start, [0.0, SETTLING * unit], parameter, scale)?;
-        let path = self.by_series(&settled, 12.0 * unit, parameter)?;
+        let path = self.by_series(&settled, [0.0, 12.0 * unit], parameter)?;
         let rates = self.in_time.rates_at(&settled, 0.0, parameter);
         let mut low = settled.clone();
         let mut high = settled.clone();
@@ -230,12 +230,15 @@ impl CoupledProblem<'_> {
         let is_smooth = |state: &&usize| self.in_time.has_smooth_turn(&self.states, **state);
         let (turning, begin) = highest(*states.iter().find(is_smooth)?)?;
         let unknowns = begin.into_iter().chain([period]).collect();
-        Some((Start { parameter, unknowns }, anchor_of(turning, travel[turning], period)))
+        Some((
+            Start { parameter, unknowns, section: 0.0 },
+            anchor_of(turning, travel[turning], period),
+        ))
     }
 }
 
 /// The anchor of a cycle at a turn of a coordinate, for motions of this travel and period.
 fn anchor_of(state: usize, travel: f64, period: f64) -> Anchor {
     let travel = if travel > 0.0 { travel } else { 1.0 };
-    Anchor { state, size: travel / (period * period), from_rest: false }
+    Anchor { state, size: travel / (period * period), from_rest: false, section: 0.0 }
 }

@@ -89,10 +89,12 @@ pub(super) struct FlowImage {
 /// Rests, impacts and events of a motion over a time.
 #[derive(Clone, Debug)]
 pub(super) struct Encounters {
-    /// The part of the time in which dry friction holds something.
+    /// The part of the time in which dry friction holds something, or something rests on a wall.
     pub(super) stuck: f64,
-    /// The number of impacts on walls.
+    /// The number of impacts on walls, without those that accumulate before a rest.
     pub(super) impacts: usize,
+    /// The number of rests on walls that begin.
+    pub(super) rests: usize,
     /// The number of other events.
     pub(super) events: usize,
     /// The least speed at which a wall is hit or an event begins, in the sizes of the states over the time;
@@ -101,16 +103,25 @@ pub(super) struct Encounters {
     /// The factors c of the states of sums c y that stay what they are because dry friction holds them all
     /// the time, independent of each other: of such a motion there is one for each place where it holds them.
     pub(super) places: Vec<Vec<f64>>,
+    /// The times of impacts and other events.
+    pub(super) times: Vec<f64>,
 }
 
 impl Encounters {
     /// No rest, no impact and no event.
-    const NONE: Self =
-        Self { stuck: 0.0, impacts: 0, events: 0, slowest: f64::INFINITY, places: vec![] };
+    const NONE: Self = Self {
+        stuck: 0.0,
+        impacts: 0,
+        rests: 0,
+        events: 0,
+        slowest: f64::INFINITY,
+        places: vec![],
+        times: vec![],
+    };
 
-    /// The numbers of impacts and of other events.
-    pub(super) fn counts(&self) -> [usize; 2] {
-        [self.impacts, self.events]
+    /// The numbers of impacts, of rests on walls and of other events.
+    pub(super) fn counts(&self) -> [usize; 3] {
+        [self.impacts, self.rests, self.events]
     }
 }
 
@@ -205,16 +216,59 @@ impl Flow {
         }
     }
 
-    /// The least gap of an event at the beginning, where every state changes by a unit of its size; infinite
+    /// The least gap of an event at a time, where every state changes by a unit of its size; infinite
     /// without events.
-    pub(super) fn least_gap(&self, state: &[f64], parameter: f64, sizes: &[f64]) -> f64 {
-        let jumps = self.jumps.as_ref();
-        jumps.map_or(f64::INFINITY, |jumps| sliding::least_gap(jumps, state, parameter, sizes))
+    pub(super) fn least_gap(&self, state: &[f64], time: f64, parameter: f64, sizes: &[f64]) -> f64 {
+        let least = |jumps| sliding::least_gap(jumps, state, [time, parameter], sizes);
+        self.jumps.as_ref().map_or(f64::INFINITY, least)
     }
 
-    /// The state behind the nearest event at the beginning; `None` without events.
-    pub(super) fn behind_event(&self, state: &[f64], parameter: f64) -> Option<Vec<f64>> {
-        sliding::behind_event(self.jumps.as_ref()?, state, parameter)
+    /// The state behind the nearest event at a time; `None` without events.
+    pub(super) fn behind_event(
+        &self,
+        state: &[f64],
+        time: f64,
+        parameter: f64,
+    ) -> Option<Vec<f64>> {
+        sliding::behind_event(self.jumps.as_ref()?, state, [time, parameter])
+    }
+
+    /// The state on the walls from which it is apart by no more than a search for an orbit leaves.
+    pub(super) fn onto_walls(&self, state: &[f64], time: f64, parameter: f64) -> Vec<f64> {
+        let state = state.to_vec();
+        match &self.jumps {
+            Some(jumps) => sliding::onto_walls(jumps, state, [time, parameter]),
+            None => state,
+        }
+    }
+
+    /// The gaps of all events at a state and a time with a parameter, each with its rate.
+    pub(super) fn gaps(&self, state: &[f64], time: f64, parameter: f64) -> Vec<[f64; 2]> {
+        let jumps = self.jumps.as_ref();
+        jumps.map_or(vec![], |jumps| sliding::gaps(jumps, state, [time, parameter]))
+    }
+
+    /// This flow without one of the events within a duration at both ends of each run.
+    pub(super) fn without_event_at_ends(mut self, event: usize, duration: f64) -> Self {
+        let events = self.jumps.iter_mut().flat_map(|jumps| &mut jumps.events);
+        if let Some(event) = { events }.nth(event) {
+            event.unwatched = duration;
+        }
+        self
+    }
+
+    /// The times of the impacts and events of a motion between two times; `None` if it cannot be followed.
+    pub(super) fn event_times(
+        &self,
+        start: &[f64],
+        times: [f64; 2],
+        parameter: f64,
+        sizes: &[f64],
+    ) -> Option<Vec<f64>> {
+        match &self.jumps {
+            Some(jumps) => Some(self.sliding(jumps, start, times, parameter, sizes, None)?.times),
+            None => Some(vec![]),
+        }
     }
 
     /// The reason why a motion was not followed beyond an event: a rest on a wall, or an accumulation.
@@ -349,25 +403,27 @@ impl Flow {
         Some(end.iter().zip(sizes).map(|(value, size)| value * size).collect())
     }
 
-    /// The motion over a time from zero, with its derivatives; `None` if the end is not reached.
+    /// The motion between two times, with its derivatives; `None` if the end is not reached.
     pub(super) fn image(
         &self,
         start: &[f64],
-        length: f64,
+        [from, to]: [f64; 2],
         parameter: f64,
         sizes: &[f64],
     ) -> Option<FlowImage> {
         let n = self.states;
         if let Some(jumps) = &self.jumps {
             let unit = Some(UNIT_OF_VARIATIONS);
-            let run = self.sliding(jumps, start, [0.0, length], parameter, sizes, unit)?;
+            let run = self.sliding(jumps, start, [from, to], parameter, sizes, unit)?;
             let [low, high] = &run.bounds;
             let encounters = Encounters {
-                stuck: run.stuck / length,
+                stuck: run.stuck / (to - from),
                 impacts: run.impacts,
+                rests: run.rests,
                 events: run.events,
                 slowest: run.slowest,
                 places: jumps.places_on(&run.throughout),
+                times: run.times,
             };
             return Some(FlowImage { encounters, ..image_of(n, &run.values, sizes, low, high) });
         }
@@ -409,8 +465,8 @@ impl Flow {
         for i in 0..n {
             begin[n + i * width + i] = UNIT_OF_VARIATIONS;
         }
-        let options = self.options(length, self.smooth);
-        let end = end_values(rates, Point { t: 0.0, y: begin }, length, &options)?;
+        let options = self.options(to - from, self.smooth);
+        let end = end_values(rates, Point { t: from, y: begin }, to, &options)?;
         let (low, high) = bounds.into_inner();
         Some(image_of(n, &end, sizes, &low, &high))
     }
@@ -443,7 +499,7 @@ mod tests {
         let flow = Flow::new(&names, "t".into(), &right, "p".into(), &[]).expect("a flow");
         let exact = |p: f64, t: f64| ((3.0 + p) * (p * t).exp() - (-2.0 * t).exp()) / (2.0 + p);
         let (p, t) = (0.3, 1.7);
-        let image = flow.image(&[1.0, 1.0], t, p, &[1.0, 3.0]).expect("an end");
+        let image = flow.image(&[1.0, 1.0], [0.0, t], p, &[1.0, 3.0]).expect("an end");
         let step = 1e-5;
         let by_parameter = (exact(p + step, t) - exact(p - step, t)) / (2.0 * step);
         assert!((image.end[0] / exact(p, t) - 1.0).abs() < 1e-11, "{image:?}");

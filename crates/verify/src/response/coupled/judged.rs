@@ -5,6 +5,7 @@
 //! error: (1 - M) dy = P(y) - y      P by Taylor series, dy: the way to the closed orbit
 //! ```
 
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
@@ -14,6 +15,8 @@ use super::branches::{Known, OrbitBranch};
 use super::changes::{changes_between, least_squares};
 use super::problem::{CoupledProblem, Kind, Orbit, STEP_LIMIT};
 use super::wave::{PeriodSamples, SAMPLES, Wave};
+use crate::event::StateEvent;
+use crate::exact::rational::from_f64;
 use crate::expr::Expr;
 use crate::mechanics::Rates;
 use crate::numeric::harmonics::Transform;
@@ -26,9 +29,13 @@ use crate::symbol::Symbol;
 use crate::system::{Integrator, Path, PathEnd};
 use crate::trajectory::{Trajectory, TrajectoryRequest};
 use crate::verify::Verdict;
+use crate::wall::Wall;
 
 /// Number of harmonics that are kept where none is asked for.
 const HARMONICS: usize = 16;
+
+/// Part of the period within which an event is at a time.
+const AT_END: f64 = 1e-10;
 
 /// The motion from a state by the Taylor series of the equations as they were given.
 pub(super) enum OrbitPath {
@@ -58,8 +65,6 @@ impl OrbitPath {
     /// The states at the end of a period from a start; where rounding puts an event before or behind the
     /// end, as a kick at the beginning of each period, on that side of the event which is nearer to the start.
     fn closing(&self, period: f64, start: &[f64], sizes: &[f64]) -> Option<Vec<f64>> {
-        /// Part of the period within which an event is at its end.
-        const AT_END: f64 = 1e-10;
         let end = self.states_at(period)?;
         let Self::Events(motion) = self else { return Some(end) };
         let apart = |state: &[f64]| -> f64 {
@@ -72,6 +77,13 @@ impl OrbitPath {
             Some(last) => last.before.clone(),
             None => end,
         })
+    }
+
+    /// The state at a time, before an event that rounding puts before or behind it; with it the period.
+    fn state_before(&self, time: f64, period: f64) -> Option<Vec<f64>> {
+        let Self::Events(motion) = self else { return self.states_at(time) };
+        let is_here = |end: &f64| (end - time).abs() <= AT_END * period;
+        self.states_at(motion.piece_ends().find(is_here).unwrap_or(time))
     }
 
     /// The instants within a time at which states jump, or friction begins or ends to hold something, with the
@@ -99,29 +111,47 @@ impl OrbitPath {
     }
 }
 
+/// The equations with walls and events, in a time that begins at zero.
+struct TimedEquations {
+    right: Vec<Expr>,
+    mass: Vec<Vec<Expr>>,
+    walls: Vec<Wall>,
+    events: Vec<StateEvent>,
+}
+
+/// The harmonics of a wave in the phase of the drive, from those in the phase from a section on.
+fn from_section(harmonics: Vec<[f64; 2]>, section: f64) -> Vec<[f64; 2]> {
+    let moved = |(index, [cosine, sine]): (usize, [f64; 2])| {
+        let (s, c) = (index as f64 * section).sin_cos();
+        [cosine * c - sine * s, cosine * s + sine * c]
+    };
+    harmonics.into_iter().enumerate().map(moved).collect()
+}
+
 impl CoupledProblem<'_> {
-    /// The motion from a state over a time, by the Taylor series of the equations as they were
+    /// The motion from a state at a time over a duration, by the Taylor series of the equations as they were
     /// given, with what dry friction holds; `None` if it cannot be followed all the way.
     pub(super) fn by_series(
         &self,
         start: &[f64],
-        duration: f64,
+        [begin, duration]: [f64; 2],
         parameter: f64,
     ) -> Option<OrbitPath> {
         let numbers = [(self.question.parameter, parameter)].into();
         if self.in_time.jumps() {
-            let rates = Rates { states: self.states.clone(), right: self.right.clone() };
+            let timed = self.in_later_time(begin)?;
+            let rates = Rates { states: self.states.clone(), right: timed.right };
             let coordinates = self.states[..self.coordinates].to_vec();
             let course = TrajectoryRequest {
                 values: numbers,
-                start: start.to_vec(),
+                start: self.in_time.onto_walls(start, begin, parameter),
                 duration,
                 step_limit: STEP_LIMIT,
                 interrupt: self.question.interrupt,
-                mass: Some(self.mass.clone()),
+                mass: Some(timed.mass),
                 ..TrajectoryRequest::of_rates(coordinates, rates)
-                    .with_walls(self.walls.clone())
-                    .with_events(self.events.clone())
+                    .with_walls(timed.walls)
+                    .with_events(timed.events)
             };
             let motion = course.follow_by(Integrator::Taylor).ok()?;
             return motion.is_complete().then(|| OrbitPath::Events(Box::new(motion)));
@@ -142,6 +172,41 @@ impl CoupledProblem<'_> {
         (path.reason() == PathEnd::Reached).then(|| OrbitPath::Series(Box::new(path)))
     }
 
+    /// The time at which an orbit begins.
+    pub(super) fn time_of_section(&self, orbit: &Orbit) -> f64 {
+        match orbit.kept.section {
+            0.0 => 0.0,
+            section => section / self.frequency_of(orbit),
+        }
+    }
+
+    /// The equations, walls and events in the time from here on; `None` for a time that is no number.
+    fn in_later_time(&self, begin: f64) -> Option<TimedEquations> {
+        let time = Symbol::new("t");
+        let later = Expr::from(time) + Expr::number(from_f64(begin)?);
+        let later: BTreeMap<Symbol, Expr> = [(time, later)].into();
+        let moved = |expression: &Expr| -> Option<Expr> {
+            match begin == 0.0 || !expression.contains(time) {
+                true => Some(expression.clone()),
+                false => expression.substitute_all(&later).ok(),
+            }
+        };
+        let all = |row: &Vec<Expr>| -> Option<Vec<Expr>> { row.iter().map(moved).collect() };
+        let wall = |wall: &Wall| {
+            Some(Wall { gap: moved(&wall.gap)?, restitution: moved(&wall.restitution)? })
+        };
+        let event = |event: &StateEvent| match begin {
+            0.0 => Some(event.clone()),
+            _ => event.substitute_all(&later).ok(),
+        };
+        Some(TimedEquations {
+            right: all(&self.right)?,
+            mass: self.mass.iter().map(all).collect::<Option<_>>()?,
+            walls: self.walls.iter().map(wall).collect::<Option<_>>()?,
+            events: self.events.iter().map(event).collect::<Option<_>>()?,
+        })
+    }
+
     /// The highest harmonic that is kept.
     pub(super) fn harmonics(&self) -> usize {
         self.question.harmonics.unwrap_or(HARMONICS).min(MOST_HARMONICS)
@@ -152,7 +217,7 @@ impl CoupledProblem<'_> {
     fn sampled(
         &self,
         start: &[f64],
-        times: &[f64],
+        (begin, times): (f64, &[f64]),
         parameter: f64,
         scale: &[f64],
     ) -> Vec<Vec<f64>> {
@@ -163,7 +228,8 @@ impl CoupledProblem<'_> {
         let mut before = 0.0;
         for time in times {
             if *time > before
-                && let Some(next) = self.in_time.end(&state, [before, *time], parameter, &sizes)
+                && let Some(next) =
+                    self.in_time.end(&state, [begin + before, begin + *time], parameter, &sizes)
             {
                 state = next;
             }
@@ -228,18 +294,27 @@ impl CoupledProblem<'_> {
         let (n, m, parameter) = (self.states.len(), self.coordinates, orbit.parameter());
         let frequency = self.frequency_of(orbit);
         let period = TAU / frequency;
-        let start = &orbit.unknowns.as_slice()[..n];
+        let (begin, section) = (self.time_of_section(orbit), orbit.kept.section);
+        let own_start = &orbit.unknowns.as_slice()[..n];
+        let path = self.by_series(own_start, [begin, period], parameter);
+        // The state at time zero, before an event that takes place there.
+        let at_zero = match (section, &path) {
+            (0.0, _) => None,
+            (_, Some(path)) => path.state_before(period - begin, period),
+            (_, None) => self.state_at_phase(orbit, 0.0, scale),
+        };
+        let start = at_zero.as_deref().unwrap_or(own_start);
         let rates = self.in_time.rates_at(start, 0.0, parameter);
-        let path = self.by_series(start, period, parameter);
         let multipliers = self.multipliers(orbit);
         let sampled = path.as_ref().and_then(|path| PeriodSamples::of_path(path, period));
         let samples = sampled.unwrap_or_else(|| {
             let times = PeriodSamples::equal_times(period);
-            PeriodSamples::equal(period, self.sampled(start, &times, parameter, scale))
+            PeriodSamples::equal(period, self.sampled(own_start, (begin, &times), parameter, scale))
         });
         let wave = |quantity: &dyn Fn(&[f64]) -> f64| {
-            samples
-                .wave(path.as_ref(), self.harmonics(), transform, |states| quantity(&states[..m]))
+            let quantity = |states: &[f64]| quantity(&states[..m]);
+            let wave = samples.wave(path.as_ref(), self.harmonics(), transform, quantity);
+            Wave { harmonics: from_section(wave.harmonics, section), ..wave }
         };
         let polar = |wave: &Wave| {
             let [cosine, sine] = wave.harmonics.get(1).copied().unwrap_or_default();
@@ -299,7 +374,7 @@ impl CoupledProblem<'_> {
     ) -> ResponseDiagram {
         let question = self.question;
         let transform = Transform::new(SAMPLES);
-        let count: usize = known.branches.iter().map(|branch| branch.orbits.len()).sum();
+        let count: usize = known.branches.iter().map(|branch| branch.distinct().count()).sum();
         question.progress.begin(count);
         let exhausted = self.is_exhausted();
         let mut branches = Vec::new();
@@ -308,7 +383,7 @@ impl CoupledProblem<'_> {
         let size = size.iter().copied().fold(0.0, f64::max);
         for (index, branch) in known.branches.iter().enumerate() {
             let mut points = Vec::new();
-            for orbit in &branch.orbits {
+            for orbit in branch.distinct() {
                 points.push(self.motion(orbit, &transform, &known.scale));
                 question.progress.advance();
             }
@@ -376,16 +451,18 @@ impl CoupledProblem<'_> {
         branch: &OrbitBranch,
         scale: &[f64],
     ) -> Vec<(BifurcationKind, Orbit, Option<Criticality>)> {
-        self.with_orbits(scale, branch.anchor, |orbits| {
-            let mut found = Vec::new();
-            for pair in branch.orbits.windows(2) {
-                let [from, to] = pair else { continue };
-                for (kind, at) in changes_between(self, orbits, from, to) {
-                    let criticality = self.criticality(kind, &at, [from, to], orbits, scale);
-                    found.push((kind, at, criticality));
+        let mut found = Vec::new();
+        for run in branch.runs() {
+            self.with_orbits(scale, branch.anchor.of_orbit(&run[0]), |orbits| {
+                for pair in run.windows(2) {
+                    let [from, to] = pair else { continue };
+                    for (kind, at) in changes_between(self, orbits, from, to) {
+                        let criticality = self.criticality(kind, &at, [from, to], orbits, scale);
+                        found.push((kind, at, criticality));
+                    }
                 }
-            }
-            found
-        })
+            });
+        }
+        found
     }
 }

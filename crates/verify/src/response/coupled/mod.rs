@@ -12,7 +12,8 @@
 //!
 //! - `problem`: the equations with numbers for all parameters but one, and the maps of a period.
 //! - `flow`: the motion with its variations by Runge-Kutta.
-//! - `surfaces`: rates that jump, and where they do; `sliding`: the motion across jumps, with sticking.
+//! - `state_jumps`: walls and events; `surfaces`: rates that jump, and where they do; `sliding`: the motion across jumps, with sticking.
+//! - `sections`: the phases at which periods with impacts or events begin.
 //! - `starts`: the motions from which branches of a driven system start; `guesses`: those of one
 //!   harmonic.
 //! - `cycles`: the same for systems that nothing drives; `equilibria`: where these rest.
@@ -20,6 +21,7 @@
 //! - `changes`: multipliers, and bifurcations between two points of a branch.
 //! - `criticality`: whether the motions that come off there are stable.
 //! - `curves`: bifurcations in two parameters.
+//! - `grazing`: the curves on which a motion touches a wall or the condition of an event.
 //! - `judged`: a point of a branch as a steady motion with its error.
 //!
 //! In: a [`ResponseRequest`] of coupled equations. Out: the same [`ResponseDiagram`] as for one
@@ -32,12 +34,15 @@ mod curves;
 mod cycles;
 mod equilibria;
 mod flow;
+mod grazing;
 mod guesses;
 mod judged;
 mod modes;
 mod problem;
+mod sections;
 mod sliding;
 mod starts;
+mod state_jumps;
 mod surfaces;
 mod wave;
 

@@ -19,12 +19,12 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DVector};
 
 use super::flow::{Encounters, Flow, FlowImage};
-use super::surfaces::{FlowEvent, largest};
+use super::state_jumps::{StateJumps, angles, drive_of, flow_in_phase};
+use super::surfaces::largest;
 use crate::coupled::{CoupledEquations, Energy};
 use crate::event::StateEvent;
 use crate::expr::{CompiledFunction, Expr};
 use crate::numeric::orbit_branch::{OrbitEquations, OrbitPoint, PeriodImage};
-use crate::response::driven::{drive_frequency, in_phase};
 use crate::response::{ResponseError, ResponseRequest};
 use crate::symbol::{Symbol, fresh};
 use crate::system::{Solver, System, SystemOptions};
@@ -41,13 +41,15 @@ pub(super) struct Course {
     pub(super) monodromy: DMatrix<f64>,
     /// Rests, impacts and events in the period.
     pub(super) encounters: Encounters,
+    /// The phase at which the period begins, of a driven motion; else zero.
+    pub(super) section: f64,
 }
 
 /// An orbit of a branch.
 pub(super) type Orbit = OrbitPoint<Course>;
 
-/// The state whose rate is zero where a motion without a drive begins, and a size for that rate over
-/// the unknown that goes with it.
+/// The beginning of a motion: of one without a drive the state whose rate is zero there, and a size for
+/// that rate over the unknown that goes with it; of a driven one the phase.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Anchor {
     pub(super) state: usize,
@@ -55,11 +57,23 @@ pub(super) struct Anchor {
     /// Whether all rates are zero there, and half a period later: of free motions beside which there are
     /// others with a shift between the coordinates, so that the one rate does not fix the motion.
     pub(super) from_rest: bool,
+    /// The phase of the drive.
+    pub(super) section: f64,
 }
 
 impl Anchor {
-    /// The anchor of driven motions, which need none.
-    pub(super) const NONE: Self = Self { state: 0, size: 1.0, from_rest: false };
+    /// The anchor of driven motions that begin at phase zero.
+    pub(super) const NONE: Self = Self { state: 0, size: 1.0, from_rest: false, section: 0.0 };
+
+    /// The anchor of driven motions that begin at a phase.
+    pub(super) fn at_phase(section: f64) -> Self {
+        Self { section, ..Self::NONE }
+    }
+
+    /// This anchor at the beginning of an orbit.
+    pub(super) fn of_orbit(self, orbit: &Orbit) -> Self {
+        Self { section: orbit.kept.section, ..self }
+    }
 }
 
 /// The equations of orbits.
@@ -112,6 +126,8 @@ pub(super) struct CoupledProblem<'a> {
     pub(super) undamped: bool,
     /// The quantity that is listed, in the coordinates.
     pub(super) shown: CompiledFunction,
+    /// The coordinates that are angles: a turn of 2 pi changes nothing.
+    pub(super) angles: Vec<usize>,
     /// Whether a motion was met in which dry friction holds everything.
     pub(super) rests: Cell<bool>,
     /// The energy of a free motion without damping, and the place of rest from which it is counted.
@@ -163,17 +179,8 @@ impl<'a> CoupledProblem<'a> {
             .map(|rate| rate.substitute_all(&values))
             .collect::<Result<_, _>>()?;
         let states = rates.states.clone();
-        let (walls, mass) = with_numbers(question, equations, &values)?;
-        let events: Vec<StateEvent> = question
-            .events
-            .iter()
-            .map(|event| event.substitute_all(&values))
-            .collect::<Result<_, _>>()?;
-        let mut flow_events: Vec<FlowEvent> = walls
-            .iter()
-            .map(|wall| flow_wall(wall, &mass, &states, &equations.coordinates))
-            .collect::<Result<_, _>>()?;
-        flow_events.extend(events.iter().flat_map(|event| flow_event(event, &states)));
+        let StateJumps { walls, mass, events, flow_events } =
+            StateJumps::new(question, equations, &values)?;
         let in_time =
             Flow::new(&states, time, &right, parameter, &flow_events)?.until(question.interrupt);
         let numbers = [(parameter, ANY)].into();
@@ -183,13 +190,7 @@ impl<'a> CoupledProblem<'a> {
         let names: Vec<Symbol> = states.iter().copied().chain([parameter, time]).collect();
         let (kind, in_phase) = match (driven, free) {
             (true, _) => {
-                let of_events = flow_events.iter();
-                let of_events =
-                    of_events.flat_map(|event| [&event.gap].into_iter().chain(&event.after));
-                let timed: Vec<Expr> = right.iter().chain(of_events).cloned().collect();
-                let frequency = drive_frequency(&timed, &states)?;
-                let periods = Expr::from(i64::try_from(question.periods).unwrap_or(1));
-                let base = Expr::divide(&frequency, &periods)?;
+                let (frequency, base) = drive_of(&right, &flow_events, &states, question.periods)?;
                 let flow =
                     flow_in_phase(&names, &states, (&right, &flow_events), &base, parameter)?;
                 let base = CompiledFunction::new(&base, &[parameter])?;
@@ -226,6 +227,7 @@ impl<'a> CoupledProblem<'a> {
             question,
             energy: None,
             rests: Cell::new(false),
+            angles: angles(&states, &right, &flow_events, parameter, equations.coordinates.len())?,
             smooth: !right.iter().any(Expr::contains_corner),
             kind,
             coordinates: equations.coordinates.len(),
@@ -295,14 +297,17 @@ impl<'a> CoupledProblem<'a> {
     /// `scale`: at least a tenth of the largest of its kind, positions or velocities.
     pub(super) fn state_sizes(&self, travel: &[f64], scale: &[f64]) -> Vec<f64> {
         let n = self.coordinates;
+        /// Size of what is rounding where nothing moves and states are set to numbers.
+        const NOTHING: f64 = 1e-12;
         let least = self.least_sizes(travel);
+        let least_size = if self.question.has_jumps_of_states() { NOTHING } else { 0.0 };
         let own = |index: usize| {
             let kind = usize::from(index >= n);
             let of_kind = if kind == 0 { &travel[..n] } else { &travel[n..self.states.len()] };
             let largest = of_kind.iter().copied().fold(0.0, f64::max);
             let others = scale.get(index).copied().unwrap_or(0.0);
             let size = travel[index].max(SMALLEST * largest.max(others)).max(least[kind]);
-            if size > 0.0 && size.is_finite() { size } else { 1.0 }
+            if size > least_size && size.is_finite() { size } else { 1.0 }
         };
         (0..self.states.len()).map(own).collect()
     }
@@ -367,7 +372,9 @@ impl<'a> CoupledProblem<'a> {
             let start_of = start.as_slice();
             let held_at = |image| at_places(image, start_of, &mut places.borrow_mut());
             match self.kind {
-                Kind::Driven(_) => self.driven_image(start_of, parameter, scale).map(held_at),
+                Kind::Driven(_) => {
+                    self.driven_image(start_of, parameter, scale, anchor.section).map(held_at)
+                }
                 Kind::SelfExcited => {
                     self.cycle_image(start_of, parameter, scale, anchor).map(held_at)
                 }
@@ -383,7 +390,7 @@ impl<'a> CoupledProblem<'a> {
     }
 
     /// The sizes in which a motion from a start is followed.
-    fn sizes_of_start(&self, start: &[f64], scale: &[f64]) -> Vec<f64> {
+    pub(super) fn sizes_of_start(&self, start: &[f64], scale: &[f64]) -> Vec<f64> {
         let absolute: Vec<f64> = start.iter().map(|value| value.abs()).collect();
         let largest: Vec<f64> = absolute
             .iter()
@@ -413,11 +420,13 @@ impl<'a> CoupledProblem<'a> {
         start: &[f64],
         parameter: f64,
         scale: &[f64],
+        section: f64,
     ) -> Option<PeriodImage<Course>> {
         let sizes = self.sizes_of_start(start, scale);
+        let phases = [section, section + TAU];
         let FlowImage { end, by_start, by_parameter, travel, encounters } =
-            self.in_phase.as_ref()?.image(start, TAU, parameter, &sizes)?;
-        let path = Course { travel, monodromy: by_start.clone(), encounters };
+            self.in_phase.as_ref()?.image(start, phases, parameter, &sizes)?;
+        let path = Course { travel, monodromy: by_start.clone(), encounters, section };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 
@@ -434,13 +443,14 @@ impl<'a> CoupledProblem<'a> {
             return None;
         }
         let sizes = self.sizes_of_start(start, scale);
-        let image = self.in_time.image(start, period, parameter, &sizes)?;
+        let image = self.in_time.image(start, [0.0, period], parameter, &sizes)?;
         let begin = self.in_time.linearised(start, 0.0, parameter);
         let flow = self.in_time.rates_at(image.end.as_slice(), 0.0, parameter);
         let path = Course {
             travel: image.travel,
             monodromy: image.by_start.clone(),
             encounters: image.encounters,
+            section: 0.0,
         };
         let mut by_start = image.by_start.resize(n + 1, n + 1, 0.0);
         by_start.view_mut((0, n), (n, 1)).copy_from(&flow);
@@ -467,7 +477,7 @@ impl<'a> CoupledProblem<'a> {
         let mut sizes = self.sizes_of_start(&start[..n], scale);
         sizes.push(omega);
         let FlowImage { mut end, mut by_start, by_parameter, travel, encounters } =
-            self.in_phase.as_ref()?.image(start, TAU, omega, &sizes)?;
+            self.in_phase.as_ref()?.image(start, [0.0, TAU], omega, &sizes)?;
         // The damping stays what it is; its row holds the rate that is to be zero.
         let velocity = state + self.coordinates;
         end[n] = start[n] + start[velocity] / size;
@@ -475,7 +485,7 @@ impl<'a> CoupledProblem<'a> {
             by_start[(n, column)] = if column == velocity { 1.0 / size } else { 0.0 };
         }
         let monodromy = by_start.view((0, 0), (n, n)).into_owned();
-        let path = Course { travel: travel[..n].to_vec(), monodromy, encounters };
+        let path = Course { travel: travel[..n].to_vec(), monodromy, encounters, section: 0.0 };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 
@@ -494,7 +504,7 @@ impl<'a> CoupledProblem<'a> {
         let (n, m) = (self.states.len(), self.coordinates);
         let mut sizes = self.sizes_of_start(&start[..n], scale);
         sizes.push(omega);
-        let half = self.in_phase.as_ref()?.image(start, 0.5 * TAU, omega, &sizes)?;
+        let half = self.in_phase.as_ref()?.image(start, [0.0, 0.5 * TAU], omega, &sizes)?;
         let mut end = DVector::from_column_slice(start) * 2.0;
         let mut by_start = DMatrix::identity(n + 1, n + 1) * 2.0;
         let mut by_parameter = DVector::zeros(n + 1);
@@ -518,7 +528,7 @@ impl<'a> CoupledProblem<'a> {
         let travel = |(i, travel): (usize, &f64)| if i < m { *travel } else { 2.0 * travel };
         let travel = half.travel[..n].iter().enumerate().map(travel).collect();
         // A free motion has neither impacts nor events.
-        let path = Course { travel, monodromy, encounters: half.encounters };
+        let path = Course { travel, monodromy, encounters: half.encounters, section: 0.0 };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 }
@@ -553,79 +563,6 @@ fn at_places(
         }
     }
     image
-}
-
-/// The walls of a request and the mass matrix, with numbers for all parameters but one.
-fn with_numbers(
-    question: &ResponseRequest,
-    equations: &CoupledEquations,
-    values: &BTreeMap<Symbol, Expr>,
-) -> Result<(Vec<Wall>, Vec<Vec<Expr>>), ResponseError> {
-    let wall = |wall: &Wall| -> Result<Wall, ResponseError> {
-        Ok(Wall {
-            gap: wall.gap.substitute_all(values)?,
-            restitution: wall.restitution.substitute_all(values)?,
-        })
-    };
-    for wall in &question.walls {
-        let mut numbers: BTreeMap<Symbol, f64> = question.values.numbers();
-        for end in question.range {
-            numbers.insert(question.parameter, end);
-            wall.restitution_at(&numbers)?;
-        }
-    }
-    let row = |row: &Vec<Expr>| row.iter().map(|entry| entry.substitute_all(values)).collect();
-    let mass = equations.matrix.iter().map(row).collect::<Result<_, _>>()?;
-    Ok((question.walls.iter().map(wall).collect::<Result<_, _>>()?, mass))
-}
-
-/// A wall with the states after an impact.
-fn flow_wall(
-    wall: &Wall,
-    mass: &[Vec<Expr>],
-    states: &[Symbol],
-    coordinates: &[Symbol],
-) -> Result<FlowEvent, ResponseError> {
-    let impact = wall.impact(coordinates, states, Some(mass))?;
-    let velocities = impact.velocities_after(coordinates, &wall.restitution)?;
-    let positions = coordinates.iter().copied().map(Expr::from);
-    let after = positions.chain(velocities).collect();
-    Ok(FlowEvent { gap: impact.gap, after, is_wall: true })
-}
-
-/// An event with all states after it; one that counts in both directions is two.
-fn flow_event(event: &StateEvent, states: &[Symbol]) -> Vec<FlowEvent> {
-    let after = |state: &Symbol| {
-        let set = event.assignments.iter().find(|(name, _)| name == state);
-        set.map_or_else(|| Expr::from(*state), |(_, value)| value.clone())
-    };
-    let after: Vec<Expr> = states.iter().map(after).collect();
-    let falling = |gap: Expr| FlowEvent { gap, after: after.clone(), is_wall: false };
-    let growing = event.both_ways.then(|| falling(event.guard.clone()));
-    [falling(-&event.guard)].into_iter().chain(growing).collect()
-}
-
-/// The right sides and events in the phase of a motion of frequency `base`.
-pub(super) fn flow_in_phase(
-    names: &[Symbol],
-    states: &[Symbol],
-    (right, events): (&[Expr], &[FlowEvent]),
-    base: &Expr,
-    parameter: Symbol,
-) -> Result<Flow, ResponseError> {
-    let phase = fresh("theta", &names.iter().chain(states).copied().collect::<Vec<_>>());
-    let moment = Expr::divide(&Expr::from(phase), base)?;
-    let rate = |rate: &Expr| -> Result<Expr, ResponseError> {
-        Ok(Expr::divide(&in_phase(rate, Symbol::new("t"), &moment)?, base)?)
-    };
-    let right: Vec<Expr> = right.iter().map(rate).collect::<Result<_, _>>()?;
-    let moved = |expression: &Expr| in_phase(expression, Symbol::new("t"), &moment);
-    let event = |event: &FlowEvent| -> Result<FlowEvent, ResponseError> {
-        let after = event.after.iter().map(moved).collect::<Result<_, _>>()?;
-        Ok(FlowEvent { gap: moved(&event.gap)?, after, is_wall: event.is_wall })
-    };
-    let events: Vec<FlowEvent> = events.iter().map(event).collect::<Result<_, _>>()?;
-    Flow::new(states, phase, &right, parameter, &events)
 }
 
 /// Whether a motion passed backward in time is a motion as well: the accelerations do not change

@@ -19,6 +19,7 @@
 
 mod held;
 mod passages;
+mod resting;
 
 use std::cell::{Cell, RefCell};
 
@@ -29,6 +30,7 @@ use crate::numeric::ode::{
     Action, Event, IntegrationOptions, Point, StopReason, integrate_first_order,
 };
 use held::{Held, set_shares};
+pub(super) use resting::onto_walls;
 
 /// Distance from a surface, in the sizes of the states, at which an event is: that of rounding.
 const UNSEEN: f64 = 1e-12;
@@ -58,7 +60,7 @@ pub(super) enum SlidingStop {
     Undetermined(usize),
     /// A rate has no value, or a step vanishes.
     NoValue,
-    /// Impacts accumulate, and the motion rests on a wall.
+    /// The motion rests on a wall beside another one, or where forces jump.
     RestsOnWall,
     /// Other events accumulate, or one takes place at once with another.
     EventsAccumulate,
@@ -72,17 +74,21 @@ pub(super) struct SlidingRun {
     pub(super) values: Vec<f64>,
     /// The lowest and the highest value of each state.
     pub(super) bounds: [Vec<f64>; 2],
-    /// Duration in which something sticks.
+    /// Duration in which something sticks, or rests on a wall.
     pub(super) stuck: f64,
     /// The surfaces on which it sticks all the time, but for a moment at the start.
     pub(super) throughout: Vec<usize>,
-    /// The number of impacts on walls.
+    /// The number of impacts on walls, without those that accumulate before a rest.
     pub(super) impacts: usize,
+    /// The number of rests on walls that begin.
+    pub(super) rests: usize,
     /// The number of other events.
     pub(super) events: usize,
     /// The least speed of an impact or into an event, in the sizes of the states over the duration; infinite
     /// if there is none.
     pub(super) slowest: f64,
+    /// The times of impacts and other events.
+    pub(super) times: Vec<f64>,
     /// Evaluations of the rates.
     pub(super) evaluations: u64,
 }
@@ -96,6 +102,8 @@ enum Meeting {
     Released(usize, f64),
     /// The gap of this event has fallen to zero.
     Event(usize),
+    /// The wall on which the motion rests would have to pull.
+    Lifted,
 }
 
 /// The state of a run.
@@ -111,15 +119,22 @@ struct EventRun<'a> {
     sides: Vec<f64>,
     /// The surfaces on which it sticks.
     held: Held,
-    bounds: RefCell<[Vec<f64>; 2]>,
+    bounds: [Vec<f64>; 2],
     /// The numbers of impacts and of other events, and of the last ones that followed each other at once.
     impacts: usize,
     events: usize,
     at_once: usize,
+    /// The wall on which the motion rests, and the number of rests that have begun.
+    resting: Option<usize>,
+    rests: usize,
+    /// The number of impacts at the last release.
+    impacts_at_release: usize,
     /// The time of the last event, of all and of each, and the least speed into one.
     last: f64,
     passed: Vec<f64>,
     slowest: f64,
+    /// The times of all impacts and other events.
+    times: Vec<f64>,
     evaluations: Cell<u64>,
 }
 
@@ -143,15 +158,16 @@ pub(super) fn follow(
         ..*options
     };
     let mut stuck = 0.0;
+    run.begin_at_rest(to - from)?;
     run.check_walls()?;
     run.begin()?;
     let mut throughout: Option<Vec<usize>> = None;
     for _ in 0..MOST_EVENTS {
         run.settle()?;
         let held = run.held.clone();
-        let began = run.time;
+        let (began, rested) = (run.time, run.resting.is_some());
         let meeting = if run.time < to { run.leg([from, to], &options)? } else { None };
-        if !held.is_empty() {
+        if !held.is_empty() || rested {
             stuck += run.time - began;
         }
         // A guess of an orbit may begin a little beside a surface.
@@ -162,18 +178,21 @@ pub(super) fn follow(
             None => {
                 return Ok(SlidingRun {
                     values: run.values,
-                    bounds: run.bounds.into_inner(),
+                    bounds: run.bounds,
                     stuck,
                     throughout: throughout.unwrap_or_default(),
                     impacts: run.impacts,
+                    rests: run.rests,
                     events: run.events,
                     slowest: run.slowest,
+                    times: run.times,
                     evaluations: run.evaluations.get(),
                 });
             }
             Some(Meeting::Reached(index)) => run.meet(index)?,
             Some(Meeting::Released(index, side)) => run.release(index, side)?,
             Some(Meeting::Event(event)) => run.pass(event, to - from)?,
+            Some(Meeting::Lifted) => run.lift(),
         }
     }
     let nearest = (0..run.sides.len()).min_by(|one, other| {
@@ -183,21 +202,21 @@ pub(super) fn follow(
     Err(SlidingStop::Chatter(nearest.unwrap_or(0)))
 }
 
-/// The arguments of all functions at time zero, on the positive side of all surfaces.
-fn at_beginning(surfaces: &JumpSurfaces, state: &[f64], parameter: f64) -> Vec<f64> {
+/// The arguments of all functions at a time and a parameter, on the positive side of all surfaces.
+fn at_beginning(surfaces: &JumpSurfaces, state: &[f64], at: [f64; 2]) -> Vec<f64> {
     let sides = surfaces.arguments.iter().map(|_| 1.0);
-    state.iter().copied().chain([0.0, parameter]).chain(sides).collect()
+    state.iter().copied().chain(at).chain(sides).collect()
 }
 
-/// The least gap of an event at time zero, where every state changes by a unit of its size; infinite without
-/// events.
+/// The least gap of an event at a time and a parameter, where every state changes by a unit of its size;
+/// infinite without events.
 pub(super) fn least_gap(
     surfaces: &JumpSurfaces,
     state: &[f64],
-    parameter: f64,
+    at: [f64; 2],
     sizes: &[f64],
 ) -> f64 {
-    let arguments = at_beginning(surfaces, state, parameter);
+    let arguments = at_beginning(surfaces, state, at);
     let gap = |event: &EventMap| {
         let normal = event.normal.at(&arguments);
         let size: f64 =
@@ -207,13 +226,29 @@ pub(super) fn least_gap(
     surfaces.events.iter().map(gap).fold(f64::INFINITY, f64::min)
 }
 
-/// The state behind the nearest event at time zero; `None` without events.
+/// The gaps of all events at a time and a parameter, each with its rate.
+pub(super) fn gaps(surfaces: &JumpSurfaces, state: &[f64], at: [f64; 2]) -> Vec<[f64; 2]> {
+    let mut arguments = at_beginning(surfaces, state, at);
+    let first = state.len() + 2;
+    for (index, height) in surfaces.heights.iter().enumerate() {
+        arguments[first + index] = if height.call(&arguments) < 0.0 { -1.0 } else { 1.0 };
+    }
+    let rates = surfaces.rates.at(&arguments);
+    let gap = |event: &EventMap| {
+        let normal = event.normal.at(&arguments);
+        let carried: f64 = (0..state.len()).map(|k| normal[(0, k)] * rates[(k, 0)]).sum();
+        [event.gap.call(&arguments), carried + normal[(0, state.len() + 1)]]
+    };
+    surfaces.events.iter().map(gap).collect()
+}
+
+/// The state behind the nearest event at a time and a parameter; `None` without events.
 pub(super) fn behind_event(
     surfaces: &JumpSurfaces,
     state: &[f64],
-    parameter: f64,
+    at: [f64; 2],
 ) -> Option<Vec<f64>> {
-    let arguments = at_beginning(surfaces, state, parameter);
+    let arguments = at_beginning(surfaces, state, at);
     let gap = |event: &&EventMap| event.gap.call(&arguments).abs();
     let nearest = surfaces.events.iter().min_by(|one, other| gap(one).total_cmp(&gap(other)))?;
     let after = nearest.after.at(&arguments);
@@ -228,7 +263,7 @@ pub(super) fn in_front_of_walls(
 ) -> Vec<f64> {
     let n = surfaces.states;
     for wall in surfaces.events.iter().filter(|event| event.is_wall) {
-        let arguments = at_beginning(surfaces, &state, parameter);
+        let arguments = at_beginning(surfaces, &state, [0.0, parameter]);
         let gap = wall.gap.call(&arguments);
         if gap < 0.0 {
             let normal = wall.normal.at(&arguments);
@@ -303,13 +338,17 @@ impl<'a> EventRun<'a> {
             values,
             sides: vec![1.0; surfaces.arguments.len()],
             held: Held::default(),
-            bounds: RefCell::new([start.to_vec(), start.to_vec()]),
+            bounds: [start.to_vec(), start.to_vec()],
             impacts: 0,
             events: 0,
             at_once: 0,
+            resting: None,
+            rests: 0,
+            impacts_at_release: 0,
             last: f64::NEG_INFINITY,
             passed: vec![f64::NEG_INFINITY; surfaces.events.len()],
             slowest: f64::INFINITY,
+            times: Vec::new(),
             evaluations: Cell::new(0),
         }
     }
@@ -372,9 +411,14 @@ impl<'a> EventRun<'a> {
         Ok(())
     }
 
+    /// The table of the rates where the motion is, on a wall on which it rests or not.
+    fn rates_here(&self, arguments: &[f64]) -> DMatrix<f64> {
+        self.resting_map().map_or(&self.surfaces.rates, |rest| &rest.rates).at(arguments)
+    }
+
     /// The rates, in the sizes of the states.
     fn rates(&self) -> DVector<f64> {
-        let rates = self.surfaces.rates.at(&self.here());
+        let rates = self.rates_here(&self.here());
         DVector::from_fn(self.surfaces.states, |i, _| rates[(i, 0)] / self.sizes[i])
     }
 
@@ -411,9 +455,13 @@ impl<'a> EventRun<'a> {
     ) -> Result<Option<Meeting>, SlidingStop> {
         let run = &*self;
         let (surfaces, n) = (run.surfaces, run.surfaces.states);
+        let rest = run.resting_map();
+        let rates_here = rest.map_or(&surfaces.rates, |rest| &rest.rates);
         let (first, duration) = (n + 2, to - from);
         let memory = RefCell::new(Vec::new());
         let memory = &memory;
+        // The instants at which the rates were asked for, each with the states.
+        let seen = RefCell::new(Vec::new());
         let rates = |time: f64, values: &Vec<f64>, rates: &mut Vec<f64>| {
             let columns = if run.unit.is_some() { n + 1 } else { 0 };
             run.evaluations.set(run.evaluations.get() + 1 + columns as u64);
@@ -423,15 +471,13 @@ impl<'a> EventRun<'a> {
                 rates.fill(f64::NAN);
                 return;
             }
-            let [low, high] = &mut *run.bounds.borrow_mut();
-            for i in 0..n {
-                low[i] = low[i].min(arguments[i]);
-                high[i] = high[i].max(arguments[i]);
-            }
+            let seen = &mut *seen.borrow_mut();
+            seen.push(time);
+            seen.extend_from_slice(&arguments[..n]);
             match run.unit {
                 None => {
                     rates.fill(0.0);
-                    surfaces.rates.visit(arguments, |(i, _), rate| rates[i] = rate / run.sizes[i]);
+                    rates_here.visit(arguments, |(i, _), rate| rates[i] = rate / run.sizes[i]);
                 }
                 Some(unit) => run.varied_rates(arguments, values, rates, unit),
             }
@@ -463,7 +509,19 @@ impl<'a> EventRun<'a> {
                 meetings.push(Meeting::Reached(index));
             }
         }
+        if let Some(rest) = rest {
+            let acceleration = move |point: &Point<Vec<f64>>| {
+                let arguments = &mut *memory.borrow_mut();
+                run.set_arguments(point.t, &point.y, arguments);
+                rest.acceleration.call(arguments)
+            };
+            events.push(Event::new(acceleration, Action::Stop).rising().reading(n));
+            meetings.push(Meeting::Lifted);
+        }
         for (index, event) in surfaces.events.iter().enumerate() {
+            if run.resting == Some(index) {
+                continue;
+            }
             let unseen = run.unseen_gap(index, duration);
             // Just behind an event through which the motion goes on there is no second one.
             let has_passed = run.time - run.passed[index] <= UNSEEN * duration;
@@ -475,7 +533,9 @@ impl<'a> EventRun<'a> {
                 }
                 let arguments = &mut *memory.borrow_mut();
                 run.set_arguments(point.t, &point.y, arguments);
-                event.gap.call(arguments) + unseen
+                let gap = event.gap.call(arguments);
+                let is_watched = (from + event.unwatched..=to - event.unwatched).contains(&point.t);
+                if is_watched { gap + unseen } else { gap.abs() + unseen }
             };
             events.push(Event::new(gap, Action::Stop).falling().reading(n));
             meetings.push(Meeting::Event(index));
@@ -493,7 +553,24 @@ impl<'a> EventRun<'a> {
         drop(events);
         let end = path.end();
         (self.time, self.values) = (end.t, end.y);
+        self.widen_bounds(&seen.into_inner());
         Ok(meeting)
+    }
+
+    /// Takes the states at these instants, as far as the motion has come, into its bounds: the last step
+    /// before an event leads beyond it.
+    fn widen_bounds(&mut self, seen: &[f64]) {
+        let n = self.surfaces.states;
+        let end: Vec<f64> =
+            { self.values.iter().zip(self.sizes) }.map(|(y, size)| y * size).collect();
+        let [low, high] = &mut self.bounds;
+        let before = seen.chunks_exact(n + 1).filter(|at| at[0] <= self.time);
+        for states in before.map(|at| &at[1..]).chain([end.as_slice()]) {
+            for (i, state) in states.iter().enumerate() {
+                low[i] = low[i].min(*state);
+                high[i] = high[i].max(*state);
+            }
+        }
     }
 
     /// The rates of states and variations.
@@ -515,7 +592,8 @@ impl<'a> EventRun<'a> {
         };
         if self.held.is_empty() {
             let mut own = vec![0.0; n];
-            self.surfaces.varied.visit(arguments, |(i, j), value| match j {
+            let varied = self.resting_map().map_or(&self.surfaces.varied, |rest| &rest.varied);
+            varied.visit(arguments, |(i, j), value| match j {
                 0 => own[i] = value / self.sizes[i],
                 j if j <= width => add((i, j - 1), value),
                 _ => {}
@@ -636,7 +714,7 @@ mod tests {
         // The wall 1 + sin(2*t)/10 + p/20 with the coefficient of restitution 0.7 - p/50.
         let gap = text("1 + sin(2*t)/10 + p/20 - x");
         let after = text("x' - (1.7 - p/50)*(x' - cos(2*t)/5)");
-        let wall = FlowEvent { gap, after: vec![text("x"), after], is_wall: true };
+        let wall = FlowEvent { gap, after: vec![text("x"), after], is_wall: true, push: None };
         let surfaces = JumpSurfaces::new(&states, "t".into(), &right, "p".into(), &[wall]);
         let surfaces = surfaces.expect("surfaces").expect("a wall");
         let options = IntegrationOptions::with_tolerance(1e-13);

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use super::branches::{Known, Start};
 use super::flow::Flow;
-use super::problem::{Anchor, CoupledProblem, Orbit};
+use super::problem::{CoupledProblem, Orbit};
 use super::sliding::SlidingStop;
 use crate::response::{Elsewhere, ResponseDiagram, ResponseError, SeedSearch, Simulated};
 
@@ -165,13 +165,15 @@ impl CoupledProblem<'_> {
                 };
                 let settled = self.settle(start, parameter, &scale, SETTLING[0]);
                 let Some(settled) = settled else { continue };
-                self.follow_from(&Start { parameter, unknowns: settled.state }, &mut known);
+                let start = Start { parameter, unknowns: settled.state, section: 0.0 };
+                self.follow_from(&start, &mut known);
             }
             advance();
         }
         let rest = |parameter: f64| Start {
             parameter,
             unknowns: self.in_front_of_walls(vec![0.0; n], parameter),
+            section: 0.0,
         };
         for parameter in self.values(values) {
             self.follow_from(&rest(parameter), &mut known);
@@ -182,7 +184,7 @@ impl CoupledProblem<'_> {
                 break;
             }
             for unknowns in self.guesses(parameter, &known.scale) {
-                self.follow_from(&Start { parameter, unknowns }, &mut known);
+                self.follow_from(&Start { parameter, unknowns, section: 0.0 }, &mut known);
             }
             advance();
         }
@@ -268,7 +270,7 @@ impl CoupledProblem<'_> {
             let scale = known.scale.clone();
             let Settled { state: end, periods, spread } =
                 self.settle(state, parameter, &scale, chunk)?;
-            let start = Start { parameter, unknowns: end.clone() };
+            let start = Start { parameter, unknowns: end.clone(), section: 0.0 };
             if periods == Some(1) {
                 self.follow_from(&start, known);
             }
@@ -278,7 +280,7 @@ impl CoupledProblem<'_> {
                 let is_held = |orbit: Orbit| self.is_at_rest(&orbit) || self.creeps(&orbit);
                 let rests = self.in_time.jumps()
                     && found.is_none()
-                    && self.orbit_near(&start, &known.scale, Anchor::NONE).is_some_and(is_held);
+                    && self.driven_orbit_near(&start, &known.scale).is_some_and(is_held);
                 return if rests { None } else { Some((start, periods, found)) };
             }
             let trace = self.in_time.linearised(&end, 0.0, parameter).by_state.trace();
@@ -296,9 +298,10 @@ impl CoupledProblem<'_> {
         /// Distance from an orbit, relative to its size, within which a simulation has settled on it,
         /// or comes to it still.
         const NEAR: f64 = 0.05;
-        let orbit = self.orbit_near(start, &known.scale, Anchor::NONE)?;
+        let orbit = self.driven_orbit_near(start, &known.scale)?;
+        let own = self.state_at_phase(&orbit, start.section, &known.scale)?;
         let sizes = self.state_sizes(&orbit.kept.travel, &known.scale);
-        let each = orbit.unknowns.iter().zip(&start.unknowns).zip(&sizes);
+        let each = own.iter().zip(&start.unknowns).zip(&sizes);
         let apart = each.map(|((one, other), size)| ((one - other) / size).abs());
         let apart = apart.fold(0.0, f64::max);
         // A motion that winds about an orbit on its way to it may seem to repeat itself later.
@@ -326,9 +329,8 @@ impl CoupledProblem<'_> {
     /// A simulation that has settled on something that is not among the branches.
     fn elsewhere(&self, start: &Start, periods: Option<usize>) -> Option<Elsewhere> {
         let parameter = start.parameter;
-        let period = TAU / self.frequency_at(parameter);
-        let path =
-            self.by_series(&start.unknowns, period * periods.unwrap_or(1) as f64, parameter)?;
+        let duration = TAU / self.frequency_at(parameter) * periods.unwrap_or(1) as f64;
+        let path = self.by_series(&start.unknowns, [0.0, duration], parameter)?;
         const SAMPLES: usize = 512;
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         let (mut cosine, mut sine) = (0.0, 0.0);

@@ -73,6 +73,25 @@ pub(super) struct FlowEvent {
     pub(super) after: Vec<Expr>,
     /// Whether no motion is behind it, as behind a wall.
     pub(super) is_wall: bool,
+    /// The direction in which a wall pushes, M^-1 n, of each coordinate.
+    pub(super) push: Option<Vec<Expr>>,
+}
+
+/// The motion that rests on a wall, compiled; the arguments are those of the rates.
+#[derive(Clone, Debug)]
+pub(super) struct RestMap {
+    /// dg/dt.
+    pub(super) rate: CompiledFunction,
+    /// Its derivatives by the states, by the parameter and by the time.
+    pub(super) normal: Table,
+    /// The derivative of dg/dt by the time where nothing rests.
+    pub(super) acceleration: CompiledFunction,
+    /// The directions in which the wall pushes the places and the velocities, a row each.
+    pub(super) directions: Table,
+    /// f on the wall.
+    pub(super) rates: Table,
+    /// f, f_y, f_p, a row for each state.
+    pub(super) varied: Table,
 }
 
 /// An event, compiled; the arguments are those of the rates.
@@ -86,6 +105,11 @@ pub(super) struct EventMap {
     pub(super) after: Table,
     /// Whether no motion is behind it, as behind a wall.
     pub(super) is_wall: bool,
+    /// The duration at both ends of a run within which it does not take place, as where a run begins and
+    /// ends with a grazing.
+    pub(super) unwatched: f64,
+    /// The motion that rests on it, on a wall where no force jumps.
+    pub(super) rest: Option<RestMap>,
 }
 
 /// Rates with the surfaces across which they jump and the events at which states do, compiled. The
@@ -207,12 +231,53 @@ impl JumpSurfaces {
             Table::new(&rows, &all)
         };
         let by_all: Vec<Symbol> = states.iter().copied().chain([parameter, time]).collect();
+        // The derivative of a function along a motion with these rates.
+        let along = |function: &Expr| -> Result<Expr, ResponseError> {
+            let mut parts = vec![slope(function, time)?];
+            for (state, rate) in states.iter().zip(&rates) {
+                parts.push(slope(function, *state)? * rate);
+            }
+            Ok(Expr::sum(parts))
+        };
+        let rest = |gap: &Expr, push: &[Expr]| -> Result<RestMap, ResponseError> {
+            let rate = along(gap)?;
+            let acceleration = along(&rate)?;
+            let of_places = |index: usize| push.get(index).cloned().unwrap_or_else(Expr::zero);
+            let of_velocities = |index: usize| {
+                let is_own = |place: &Symbol| place.derivative() == states[index];
+                let place = states[..push.len()].iter().position(is_own);
+                place.map_or_else(Expr::zero, |place| push[place].clone())
+            };
+            let indices = 0..states.len();
+            let places: Vec<Expr> = indices.clone().map(of_places).collect();
+            let velocities: Vec<Expr> = indices.map(of_velocities).collect();
+            let mut closing = Vec::new();
+            for (state, push) in states.iter().zip(&velocities) {
+                closing.push(slope(&rate, *state)? * push);
+            }
+            let force = Expr::divide(&acceleration, &Expr::sum(closing))?;
+            let on_wall = rates.iter().zip(&velocities).map(|(rate, push)| rate - &(push * &force));
+            let on_wall: Vec<Expr> = on_wall.collect();
+            Ok(RestMap {
+                rate: CompiledFunction::new(&rate, &all)?,
+                normal: table(std::slice::from_ref(&rate), false, &[&by_all])?,
+                acceleration: CompiledFunction::new(&acceleration, &all)?,
+                directions: Table::new(&[places, velocities], &all)?,
+                rates: table(&on_wall, true, &[])?,
+                varied: table(&on_wall, true, &[&with_parameter])?,
+            })
+        };
         let event = |event: &FlowEvent| -> Result<EventMap, ResponseError> {
             Ok(EventMap {
                 gap: CompiledFunction::new(&event.gap, &all)?,
                 normal: table(std::slice::from_ref(&event.gap), false, &[&by_all])?,
                 after: table(&event.after, true, &[&by_all])?,
                 is_wall: event.is_wall,
+                unwatched: 0.0,
+                rest: match &event.push {
+                    Some(push) if count == 0 => Some(rest(&event.gap, push)?),
+                    _ => None,
+                },
             })
         };
         Ok(Some(Self {

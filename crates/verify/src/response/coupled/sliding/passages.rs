@@ -48,7 +48,7 @@ impl EventRun<'_> {
         let is_behind = |(index, event): (usize, &EventMap)| {
             let gap = event.gap.call(&arguments);
             let least = -AT_REST * self.size_of_gap(index, &arguments);
-            gap.is_nan() || event.is_wall && gap < least
+            gap.is_nan() || event.is_wall && event.unwatched == 0.0 && gap < least
         };
         match self.surfaces.events.iter().enumerate().any(is_behind) {
             true => Err(SlidingStop::NoValue),
@@ -121,7 +121,7 @@ impl EventRun<'_> {
         let arguments = self.here();
         let map = &self.surfaces.events[event];
         let (normal, after) = (map.normal.at(&arguments), map.after.at(&arguments));
-        let rates = self.surfaces.rates.at(&arguments);
+        let rates = self.rates_here(&arguments);
         let before = DVector::from_fn(n, |i, _| rates[(i, 0)]);
         let speed = self.rate_of_gap(event, &arguments);
         // A gap that has turned to rounding opens again.
@@ -137,6 +137,7 @@ impl EventRun<'_> {
             });
         }
         (self.last, self.passed[event]) = (self.time, self.time);
+        self.times.push(self.time);
         *(if map.is_wall { &mut self.impacts } else { &mut self.events }) += 1;
         let slowness = -speed * duration / self.size_of_gap(event, &arguments);
         self.slowest = self.slowest.min(slowness);
@@ -145,6 +146,12 @@ impl EventRun<'_> {
             self.values[i] = after[(i, 0)] / self.sizes[i];
         }
         self.put_behind(event, duration);
+        // An event may end a rest, or let it go on.
+        let rested = self.resting.take();
+        self.resting = rested.filter(|wall| self.comes_to_rest(*wall, duration));
+        if rested.is_some() && self.resting.is_none() {
+            self.impacts_at_release = self.impacts;
+        }
         if !map.is_wall {
             self.check_walls()?;
         }
@@ -159,14 +166,21 @@ impl EventRun<'_> {
             let is_met = before.abs() <= AT_REST * size && falls(&arguments);
             let is_lost = is_met && !(behind > -UNSEEN * size && falls(&here));
             let are_walls = map.is_wall && other.is_wall;
-            index != event && size > 0.0 && !are_walls && (jumps_past || is_lost)
+            index != event
+                && Some(index) != rested
+                && size > 0.0
+                && !are_walls
+                && (jumps_past || is_lost)
         };
         if self.surfaces.events.iter().enumerate().any(is_at_once) {
             return Err(SlidingStop::EventsAccumulate);
         }
         self.begin()?;
-        let Some(unit) = self.unit else { return Ok(()) };
-        let rates = self.surfaces.rates.at(&self.here());
+        let comes_to_rest = map.is_wall && self.comes_to_rest(event, duration);
+        let Some(unit) = self.unit else {
+            return if comes_to_rest { self.rest_on(event) } else { Ok(()) };
+        };
+        let rates = self.rates_here(&self.here());
         // R_y f + R_t - f behind.
         let lost = DVector::from_fn(n, |i, _| {
             let carried: f64 = (0..n).map(|k| after[(i, 1 + k)] * before[k]).sum();
@@ -186,6 +200,9 @@ impl EventRun<'_> {
             for (i, varied) in varied.into_iter().enumerate() {
                 self.values[n + i * width + column] = varied / self.sizes[i];
             }
+        }
+        if comes_to_rest {
+            return self.rest_on(event);
         }
         if self.held.is_empty() { Ok(()) } else { self.lose_normals() }
     }

@@ -26,7 +26,10 @@ impl RestPoint {
     /// The position at which a motion at x settles, without friction and excitation; the bottom if
     /// x is not finite.
     pub fn near(model: &Model, x: f64) -> Self {
-        // Nearly every motion stays about the first bottom.
+        // Nearly every motion does.
+        if Self::is_first_bottom(model, x) {
+            return Self { x: 0.0, bottom: 0.0, held: None };
+        }
         let turns = x.abs() >= PI && x.is_finite();
         let bottom = if turns { TAU * (x / TAU).round() } else { 0.0 };
         let held = [Side::Left, Side::Right].into_iter().find_map(|side| {
@@ -40,6 +43,15 @@ impl RestPoint {
         let excess = |depth: f64| hertz::force(model.gamma, depth) - (height - depth).sin();
         let depth = find_root(excess, 0.0, height).unwrap_or(0.0);
         Self { x: barrier + side.sign() * depth, bottom, held: Some(side) }
+    }
+
+    /// Whether the position at which a motion at x settles is zero: x lies about the first bottom, and no
+    /// barrier beyond it is in the way.
+    #[inline]
+    pub fn is_first_bottom(model: &Model, x: f64) -> bool {
+        x.abs() < PI
+            && model.left.is_none_or(|barrier| barrier <= 0.0)
+            && model.right.is_none_or(|barrier| barrier >= 0.0)
     }
 
     /// Height of the rest position above the bottom, rad.

@@ -311,6 +311,10 @@ pub(in crate::impact) fn has_rested(model: &Model, turns: &[TurningPoint], level
     let Some(last) = turns.last() else {
         return false;
     };
+    // The usual case at once.
+    if last.x.abs() > level && RestPoint::is_first_bottom(model, last.x) {
+        return false;
+    }
     let place = RestPoint::near(model, last.x);
     let small = |turn: &TurningPoint| (turn.x - place.x).abs() <= level;
     if !small(last) {

@@ -440,7 +440,7 @@ fn refused(error: ResponseError) -> Failure {
             "`lindstedt simulate` with --wall follows one of them; with a drive, damping or a smaller --restitution there are branches".to_owned(),
         ),
         ResponseError::RestsOnWall => Some(
-            "`lindstedt simulate` with --wall follows it to rest and beyond; a larger coefficient of restitution or a stronger drive keeps it moving"
+            "`lindstedt simulate` with --wall follows it; a larger coefficient of restitution or a stronger drive keeps it moving"
                 .to_owned(),
         ),
         ResponseError::EventsAccumulate => Some(

@@ -509,11 +509,11 @@ class Response(Answer):
         branches: The branches, each a list of points in order.
         mirrored: Of each branch whether -x half a period of the drive later is a branch as well,
             which is not listed.
-        stuck: Of each point of a branch the part of a period in which dry friction holds it;
-            empty for a branch that nothing holds.
+        stuck: Of each point of a branch the part of a period in which dry friction holds it or it
+            rests on a wall; empty for a branch that nothing holds.
         walls: The walls; left out without one.
-        impacts: The number of impacts in a period at each point of a branch; left out without a
-            wall.
+        impacts: The number of impacts in a period at each point of a branch, without those that
+            accumulate before a rest; left out without a wall.
         events: The events, as `--event` takes them; left out without one.
         event_counts: The number of events in a period at each point of a branch; left out without
             an event.

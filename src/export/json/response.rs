@@ -56,13 +56,14 @@ pub struct ResponseDocument {
     /// Of each branch whether -x half a period of the drive later is a branch as well, which is not
     /// listed.
     pub mirrored: Vec<bool>,
-    /// Of each point of a branch the part of a period in which dry friction holds it; empty for a
-    /// branch that nothing holds.
+    /// Of each point of a branch the part of a period in which dry friction holds it or it rests on a
+    /// wall; empty for a branch that nothing holds.
     pub stuck: Vec<Vec<f64>>,
     /// The walls; left out without one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub walls: Vec<WallDocument>,
-    /// The number of impacts in a period at each point of a branch; left out without a wall.
+    /// The number of impacts in a period at each point of a branch, without those that accumulate before
+    /// a rest; left out without a wall.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub impacts: Vec<Vec<usize>>,
     /// The events, as `--event` takes them; left out without one.

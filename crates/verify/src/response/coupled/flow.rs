@@ -233,13 +233,20 @@ impl Flow {
         sliding::behind_event(self.jumps.as_ref()?, state, [time, parameter])
     }
 
-    /// The state on the walls from which it is apart by no more than a search for an orbit leaves.
-    pub(super) fn onto_walls(&self, state: &[f64], time: f64, parameter: f64) -> Vec<f64> {
-        let state = state.to_vec();
-        match &self.jumps {
-            Some(jumps) => sliding::onto_walls(jumps, state, [time, parameter]),
-            None => state,
-        }
+    /// The state, at the beginning of a motion of some duration, on the walls from which it is apart by no more
+    /// than a search for an orbit leaves.
+    pub(super) fn onto_walls(
+        &self,
+        state: &[f64],
+        [time, duration]: [f64; 2],
+        parameter: f64,
+    ) -> Vec<f64> {
+        let Some(jumps) = &self.jumps else { return state.to_vec() };
+        let rates = self.rates_at(state, time, parameter);
+        let sizes = state.iter().zip(rates.iter());
+        let sizes: Vec<f64> =
+            sizes.map(|(value, rate)| value.abs() + rate.abs() * duration).collect();
+        sliding::onto_walls(jumps, state.to_vec(), &sizes, [time, parameter])
     }
 
     /// The gaps of all events at a state and a time with a parameter, each with its rate.

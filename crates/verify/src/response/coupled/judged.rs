@@ -144,7 +144,7 @@ impl CoupledProblem<'_> {
             let coordinates = self.states[..self.coordinates].to_vec();
             let course = TrajectoryRequest {
                 values: numbers,
-                start: self.in_time.onto_walls(start, begin, parameter),
+                start: self.in_time.onto_walls(start, [begin, duration], parameter),
                 duration,
                 step_limit: STEP_LIMIT,
                 interrupt: self.question.interrupt,

@@ -6,15 +6,16 @@
 //! variations           z_q -= w (g_y z + g_p)/(w . grad_q g),   then z_v -= w (g'_y z + g'_p)/(w . grad_v g'),   g' = dg/dt
 //! ```
 //!
-//! From an impact that is so slow that the next one follows within 1e-7 of the run the motion is taken to rest:
-//! what is left of the sum of all bounces is of the order of that squared. Along the normal of the wall what was
+//! From an impact that is so slow that the next one follows within 1e-5 of the run the motion is taken to rest:
+//! what is left of the sum of all bounces is of the order of that squared. Flights that are much shorter would stay
+//! within the distance from the wall at which an impact is seen. Along the normal of the wall what was
 //! before is forgotten: the saltation matrix has two ranks less. At the release nothing jumps.
 
 use super::{AT_REST, EventRun, SlidingStop, UNSEEN};
 use crate::response::coupled::surfaces::{JumpSurfaces, RestMap};
 
 /// Part of a run below which an impact that follows the one before ends in rest.
-const SHORTEST_FLIGHT: f64 = 1e-7;
+const SHORTEST_FLIGHT: f64 = 1e-5;
 
 /// Depth behind a wall, in the sizes of the states, from which a motion that the wall bears begins on it.
 const NEARLY_ON: f64 = 0.05;
@@ -136,11 +137,12 @@ impl<'a> EventRun<'a> {
     }
 }
 
-/// The state on the walls from which rounding or the search for an orbit have left it apart, and without a
-/// speed off them where that is rounding too; otherwise as it is.
+/// The state, in these sizes, on the walls from which rounding or the search for an orbit have left it apart,
+/// and without a speed off them where that is rounding too; otherwise as it is.
 pub(in crate::response::coupled) fn onto_walls(
     surfaces: &JumpSurfaces,
     mut state: Vec<f64>,
+    sizes: &[f64],
     at: [f64; 2],
 ) -> Vec<f64> {
     let n = surfaces.states;
@@ -153,7 +155,7 @@ pub(in crate::response::coupled) fn onto_walls(
             (rest.rate.call(&arguments), rest.normal.at(&arguments)),
         ];
         for (row, (height, normal)) in heights.into_iter().enumerate() {
-            let size: f64 = (0..n).map(|k| (normal[(0, k)] * state[k]).abs()).sum();
+            let size: f64 = (0..n).map(|k| (normal[(0, k)] * sizes[k]).abs()).sum();
             let along: f64 = (0..n).map(|k| normal[(0, k)] * directions[(row, k)]).sum();
             let is_near = height.abs() <= AT_REST * size && along != 0.0;
             if !is_near {

@@ -13,7 +13,9 @@ use crate::expr::{Expr, Function, Node};
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::continuation::BranchEnd;
 use crate::response::slow::{SlowEquations, SlowResponse};
-use crate::response::{Branch, Elsewhere, MOST_HARMONICS, ResponseDiagram, SteadyMotion};
+use crate::response::{
+    Branch, Elsewhere, MOST_HARMONICS, MOST_IMPACTS, ResponseDiagram, SteadyMotion,
+};
 use crate::solution::Solution;
 use crate::symbol::Symbol;
 use crate::values::Values;
@@ -284,8 +286,14 @@ fn end_in_words(
         ),
         BranchEnd::Grazing => {
             let [event, place_of_event] = jump_words(response);
+            let followed = match point.impacts > MOST_IMPACTS * response.question.periods {
+                true => format!(
+                    "; from {MOST_IMPACTS} {event}s in a period of the drive on, motions beyond are not looked for"
+                ),
+                false => String::new(),
+            };
             format!(
-                "It grazes {place_of_event} at {place}: beyond, a period has an {event} less or more, and the map of a period has a root there."
+                "It grazes {place_of_event} at {place}: beyond, a period has an {event} less or more, and the map of a period has a root there{followed}."
             )
         }
         BranchEnd::Lost if response.jumps => format!(

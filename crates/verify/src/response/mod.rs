@@ -481,6 +481,10 @@ const MOST_EVALUATIONS: usize = 10_000_000;
 /// Largest number of branches that are followed.
 const MOST_BRANCHES: usize = 32;
 
+/// Largest number of impacts or other events in a period of the drive for a motion beyond whose grazing others are
+/// looked for: where impacts nearly accumulate there are infinitely many grazings on a short stretch.
+pub const MOST_IMPACTS: usize = 8;
+
 /// Computes and verifies all steady states that are found.
 ///
 /// # Errors

@@ -12,7 +12,7 @@ use crate::expr::Expr;
 use crate::numeric::orbit_branch::{OrbitBranchEnd, OrbitBranchLimits};
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::continuation::BranchEnd;
-use crate::response::{LONGEST_STEP, MOST_BRANCHES, MOST_POINTS};
+use crate::response::{LONGEST_STEP, MOST_BRANCHES, MOST_IMPACTS, MOST_POINTS};
 use crate::wall::Wall;
 
 /// A branch of orbits in order.
@@ -494,7 +494,11 @@ impl CoupledProblem<'_> {
             let is_at_wall =
                 |end: &BranchEnd| matches!(end, BranchEnd::Grazing | BranchEnd::ImpactAtStart);
             for (orbit, _) in ends.filter(|(_, end)| is_at_wall(end)) {
-                let Some(orbit) = orbit else { continue };
+                let most = MOST_IMPACTS * self.question.periods;
+                let has_few = |orbit: &&Orbit| {
+                    orbit.kept.encounters.counts().into_iter().sum::<usize>() <= most
+                };
+                let Some(orbit) = orbit.filter(has_few) else { continue };
                 for part in BESIDE {
                     let parameter = orbit.parameter() + part * (high - low);
                     if (low..=high).contains(&parameter) {

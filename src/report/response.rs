@@ -682,21 +682,35 @@ fn growing(response: &ResponseDiagram) -> Option<Block<'static>> {
     )))
 }
 
-/// The stretches in which the search had too few starts.
-fn sparse(response: &ResponseDiagram) -> Option<Block<'static>> {
-    if response.sparse.is_empty() {
-        return None;
-    }
+/// The stretches that are left out, or in which the search had too few starts.
+fn sparse(response: &ResponseDiagram) -> Vec<Block<'static>> {
     let name = response.question.parameter.name();
-    let stretch = |[low, high]: &[f64; 2]| {
-        format!("from {name} = {} to {}", significant(*low, 4), significant(*high, 4))
+    let [low, high] = response.question.range;
+    let of = |is_left_out: bool| -> Option<String> {
+        let stretches = response
+            .sparse
+            .iter()
+            .filter(|stretch| (stretch[1] <= low || stretch[0] >= high) == is_left_out);
+        let stretch = |[low, high]: &[f64; 2]| {
+            format!("from {name} = {} to {}", significant(*low, 4), significant(*high, 4))
+        };
+        let stretches: Vec<String> = stretches.map(stretch).collect();
+        (!stretches.is_empty()).then(|| stretches.join(" and "))
     };
-    let stretches: Vec<String> = response.sparse.iter().map(stretch).collect();
-    Some(Block::Sentence(format!(
-        "This is not the whole picture {}: from one start of the search to the next the motion gains more than one swing in a period of the \
-         drive there, and the branches of a resonance between two starts may be missing. Shorter ranges have closer starts.",
-        stretches.join(" and ")
-    )))
+    let left_out = of(true).map(|stretches| {
+        format!(
+            "The response {stretches} is left out: from one start of the search to the next the motion gains more than one swing in a \
+             period of the drive there, so that the branches of whole resonances would be missing. Shorter ranges have closer starts."
+        )
+    });
+    let thin = of(false).map(|stretches| {
+        format!(
+            "This is not the whole picture {stretches}: from one start of the search to the next the motion gains more than one swing in a \
+             period of the drive there, and the branches of a resonance between two starts may be missing. Shorter ranges have closer \
+             starts."
+        )
+    });
+    left_out.into_iter().chain(thin).map(Block::Sentence).collect()
 }
 
 fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {

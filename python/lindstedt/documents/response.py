@@ -538,9 +538,10 @@ class Response(Answer):
         exhausted: Whether the search for motions of coupled equations was ended because it had
             taken as much work as it may: branches may be missing or end early, and bifurcations
             are not listed. Left out where it was not.
-        sparse: The stretches of the range, each with its ends, in which the search for motions of
-            one coordinate had too few starts: from one to the next they gain more than a swing in
-            a period of the drive, so that branches may be missing. Left out where there are none.
+        sparse: The stretches, each with its ends, in which the search for motions of one
+            coordinate had too few starts: from one to the next they gain more than a swing in a
+            period of the drive. Those outside `range` were asked for and are not answered; in
+            others branches may be missing. Left out where there are none.
         complete: Whether it was followed to its end.
     """
 

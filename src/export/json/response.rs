@@ -108,9 +108,10 @@ pub struct ResponseDocument {
     /// may: branches may be missing or end early, and bifurcations are not listed. Left out where it was not.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub exhausted: bool,
-    /// The stretches of the range, each with its ends, in which the search for motions of one coordinate had
-    /// too few starts: from one to the next they gain more than a swing in a period of the drive, so that
-    /// branches may be missing. Left out where there are none.
+    /// The stretches, each with its ends, in which the search for motions of one coordinate had too few
+    /// starts: from one to the next they gain more than a swing in a period of the drive. Those outside
+    /// `range` were asked for and are not answered; in others branches may be missing. Left out where there
+    /// are none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sparse: Vec<[f64; 2]>,
     /// Whether it was followed to its end.

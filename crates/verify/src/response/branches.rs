@@ -150,8 +150,8 @@ impl PreparedRequest<'_> {
     }
 
     /// A branch that begins at a crossing with another one returns from there as its own image:
-    /// that half is removed. Shooting may also come to the other branch by a sharp crossing before
-    /// that one, where two stops are touched at once.
+    /// that half is removed. Other branches may cross before that one, and shooting may come to the
+    /// other branch by a sharp crossing, where two stops are touched at once.
     fn cut_at_crossing(&self, balance: &DrivenBalance, path: &mut BranchPath) {
         /// Largest number of crossings that are looked at.
         const MOST: usize = 8;
@@ -164,7 +164,10 @@ impl PreparedRequest<'_> {
         // A closed branch may go through two crossings and back as its image: it is begun at the last
         // one, so that the way to the first is not divided. The first point beyond comes again at
         // the end.
-        if let ([_, .., last], BranchEnd::Closed) = (turns.as_slice(), path.ends[0]) {
+        let is_whole = path.nodes.first().zip(path.nodes.last()).is_some_and(|(first, last)| {
+            path.ends[0] == BranchEnd::Closed && first.coefficients == last.coefficients
+        });
+        if let ([_, .., last], true) = (turns.as_slice(), is_whole) {
             path.nodes.pop();
             path.nodes.rotate_left(*last);
             let again: Vec<BranchNode> = path.nodes[..2].to_vec();
@@ -173,12 +176,8 @@ impl PreparedRequest<'_> {
         }
         let is_begun_at_crossing = path.ends[0] == BranchEnd::Closed && turns.first() == Some(&0);
         let begins = usize::from(is_begun_at_crossing);
-        let looked_at = if self.period_series.is_some() { MOST } else { 1 };
-        for (count, &index) in turns.iter().enumerate().skip(begins).take(looked_at) {
-            let next = match self.period_series {
-                Some(_) => turns.get(count + 1).map_or(path.nodes.len(), |next| next + 1),
-                None => path.nodes.len(),
-            };
+        for (count, &index) in turns.iter().enumerate().skip(begins).take(MOST) {
+            let next = turns.get(count + 1).map_or(path.nodes.len(), |next| next + 1);
             let (before, behind) = (&path.nodes[..=index], &path.nodes[index + 1..next]);
             let half = BranchPath { nodes: before.to_vec(), ends: path.ends, mirrored: false };
             let image =
@@ -202,15 +201,19 @@ impl PreparedRequest<'_> {
 
     /// The branch on which the motion of a point lies, shifted by drive periods or mirrored; `None`
     /// if there is none.
-    fn known_motion(
+    pub(super) fn known_motion(
         &self,
         balance: &DrivenBalance,
         paths: &[BranchPath],
         node: &BranchNode,
     ) -> Option<KnownMotion> {
-        match self.period_series {
-            Some(_) => self.known_orbit(balance, paths, node),
-            None => self.known_coefficients(balance, paths, &node.coefficients, node.parameter),
+        match (&self.period_series, node.truth) {
+            (Some(_), _) => self.known_orbit(balance, paths, node),
+            // A motion from the map from jump to jump is compared by that.
+            (None, Some(truth)) if self.driven.jumps() > 0 => {
+                self.known_across_jumps(balance, paths, node, truth.start)
+            }
+            _ => self.known_coefficients(balance, paths, &node.coefficients, node.parameter),
         }
     }
 
@@ -291,8 +294,8 @@ impl PreparedRequest<'_> {
             }
             return false;
         }
-        // The branch that crosses one across jumps is found from the motions on which simulations settle.
         if at.truth.is_some() {
+            self.follow_stuck_crossing(balance, at, walk.size, paths);
             return false;
         }
         let mut is_centre = false;
@@ -333,4 +336,72 @@ pub(super) fn smallest(balance: &DrivenBalance, paths: &[BranchPath]) -> f64 {
 /// bound.
 pub(super) fn largest(balance: &DrivenBalance, path: &BranchPath) -> f64 {
     continuation::largest(balance, &path.nodes, path.ends)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::response::ResponseRequest;
+
+    /// The branches through the motions of a balance that are larger than this at a value of the parameter,
+    /// each of one phase of the first harmonic, with the number of times that they pass a value near it.
+    fn branches_at(
+        equation: &str,
+        range: [f64; 2],
+        periods: usize,
+        (at, amplitude): (f64, f64),
+    ) -> Vec<(BranchPath, usize)> {
+        const PHASES: u32 = 12;
+        let question = ResponseRequest::new(equation, "w", range, "").expect("a request");
+        let question = ResponseRequest { periods, ..question };
+        let asked = PreparedRequest::new(&question, question.equations.oscillator().expect("one"))
+            .expect("a request");
+        let balance = DrivenBalance::new(&asked.driven, 8);
+        let seed = |phase: u32| {
+            let mut guess = DVector::zeros(balance.core.size());
+            let (sine, cosine) =
+                (std::f64::consts::TAU * f64::from(phase) / f64::from(PHASES)).sin_cos();
+            (guess[1], guess[2]) = (amplitude * cosine, amplitude * sine);
+            let found = balance.solve(&guess, at)?;
+            let is_large = balance.core.extent(&found) > 0.7 * amplitude;
+            is_large.then(|| asked.seed(&balance, &found, at))
+        };
+        let seeds: Vec<Seed> = (0..PHASES).filter_map(seed).collect();
+        assert!(!seeds.is_empty());
+        // A branch has a point at the value itself.
+        let near = 1.0003 * at;
+        let passes = |path: &BranchPath| {
+            let passes =
+                |pair: &[BranchNode]| (pair[0].parameter - near) * (pair[1].parameter - near) < 0.0;
+            path.nodes.windows(2).filter(|pair| passes(pair)).count()
+        };
+        let branches = asked.branches(&balance, &seeds, amplitude, &[]).into_iter();
+        branches.map(|path| (passes(&path), path)).map(|(count, path)| (path, count)).collect()
+    }
+
+    /// The large motion of a pendulum on a moving hinge goes through a crossing with a lopsided one, and
+    /// through rest to the same motions a drive period later, which are not listed again.
+    #[test]
+    fn a_branch_goes_on_to_its_image_behind_another_crossing() {
+        let equation = "x'' + x'/20 + (1 + 0.4*cos(w*t))*sin(x) = 0";
+        let found = branches_at(equation, [1.39, 2.3], 2, (1.9, 1.4));
+        let counts: Vec<usize> = found.iter().map(|(_, count)| *count).collect();
+        assert_eq!(counts, [1]);
+        let ends = found[0].0.ends;
+        assert!(
+            ends.contains(&BranchEnd::Crossing) && ends.contains(&BranchEnd::Range),
+            "{ends:?}"
+        );
+    }
+
+    /// Where three periods of a drive lock an oscillation there are six images of its stable and of its
+    /// unstable phase, and one loop leads through all: it is closed behind the first two.
+    #[test]
+    fn a_loop_through_its_own_images_is_closed_at_the_first() {
+        let equation = "x'' - (1 - x^2)*x'/5 + x = 0.6*cos(w*t)";
+        let found = branches_at(equation, [2.97, 3.02], 3, (2.99, 2.0));
+        let counts: Vec<usize> = found.iter().map(|(_, count)| *count).collect();
+        assert_eq!(counts, [2]);
+        assert_eq!(found[0].0.ends, [BranchEnd::Closed; 2]);
+    }
 }

@@ -104,6 +104,32 @@ pub enum BranchEnd {
     Interrupted,
 }
 
+impl DrivenBalance<'_> {
+    /// A point of a branch, and its images: shifted by drive periods, and mirrored half a drive period
+    /// later. An image is a motion of the same equation, mirrored ones where the forces are odd.
+    fn images(&self, node: &BranchNode) -> Vec<BranchNode> {
+        if self.driven.self_excited {
+            return vec![node.clone()];
+        }
+        let half = std::f64::consts::PI / self.driven.periods as f64;
+        let image = |halves: usize| {
+            let sign = if halves % 2 == 1 { -1.0 } else { 1.0 };
+            let image = |whole: &DVector<f64>| {
+                let mut image = self.core.later(whole, half * halves as f64) * sign;
+                // The parameter is the same.
+                image.rows_mut(self.core.size(), whole.len() - self.core.size()).scale_mut(sign);
+                image
+            };
+            BranchNode {
+                coefficients: image(&node.coefficients),
+                tangent: image(&node.tangent),
+                ..node.clone()
+            }
+        };
+        (0..2 * self.driven.periods).map(image).collect()
+    }
+}
+
 /// The points of a branch in order, and the reasons why it ends.
 #[derive(Clone, Debug)]
 pub struct BranchPath {
@@ -406,6 +432,8 @@ impl ContinuationSettings {
         const SLOW: f64 = 0.05;
         let [low, high] = self.range;
         let bound = ENORMOUS * balance.core.extent(&start.coefficients).max(self.ordinary);
+        // A branch that goes on to its own image goes through all of them in turn.
+        let firsts = balance.images(&start);
         // A self-excited motion near rest may end in a Hopf point.
         let at_rest = |here: &BranchNode, near: f64| match self.rest_beside(balance, here, near) {
             Some(rest) => Ended(Some(rest), BranchEnd::Rest),
@@ -468,8 +496,11 @@ impl ContinuationSettings {
             if balance.core.extent(&node.coefficients) > bound {
                 return Ended(None, BranchEnd::Unbounded);
             }
-            if nodes.len() > 8 && self.has_closed(&nodes[0], here, &node, weights) {
-                return Ended(Some(nodes[0].clone()), BranchEnd::Closed);
+            if nodes.len() > 8 {
+                let closes = |first: &&BranchNode| self.has_closed(first, here, &node, weights);
+                if let Some(first) = firsts.iter().find(closes) {
+                    return Ended(Some(first.clone()), BranchEnd::Closed);
+                }
             }
             let ratio = match iterations {
                 ..=FEW => 1.4,
@@ -510,7 +541,8 @@ impl ContinuationSettings {
         Some(BranchNode { coefficients, parameter: born.parameter, ..here.clone() })
     }
 
-    /// Whether the step between two points passes the first point of the branch in its direction.
+    /// Whether the step between two points passes the first point of the branch, or an image of it, in its
+    /// direction.
     fn has_closed(
         &self,
         first: &BranchNode,

@@ -8,7 +8,8 @@
 //! A whole resonance lies between two neighbouring values between which n grows by one, with
 //! branches of its own: of `x'' + x + x^3 = F cos(2 t)` with F up to 1e6 n grows to sixty. In: the
 //! equation, its range, and the values of a search. Out: more values, one swing apart, from the fewest
-//! swings on; and the stretches of the range in which they are still farther apart. Linear forces, and
+//! swings on; and the stretches of the range in which they are still farther apart, which are left out of
+//! the response: harmonics would not suffice for so many swings either. Linear forces, and
 //! drives of which only the frequency varies, have the same stiffness everywhere and no such stretch.
 
 use std::f64::consts::TAU;
@@ -27,6 +28,19 @@ pub(super) struct Coverage {
     pub(super) added: Vec<f64>,
     /// The stretches of the range in which neighbouring values are more than a swing apart.
     pub(super) gaps: Vec<[f64; 2]>,
+    /// The value at which the swings are fewest.
+    slowest: f64,
+}
+
+impl Coverage {
+    /// The stretch without gaps about the value at which the swings are fewest; `None` without gaps, or
+    /// if there is no such stretch.
+    pub(super) fn covered(&self, [low, high]: [f64; 2]) -> Option<[f64; 2]> {
+        let ends = self.gaps.iter().map(|gap| gap[1]).filter(|end| *end <= self.slowest);
+        let begins = self.gaps.iter().map(|gap| gap[0]).filter(|begin| *begin >= self.slowest);
+        let [from, to] = [ends.fold(low, f64::max), begins.fold(high, f64::min)];
+        (!self.gaps.is_empty() && from < to).then_some([from, to])
+    }
 }
 
 impl PreparedRequest<'_> {
@@ -43,6 +57,9 @@ impl PreparedRequest<'_> {
         values.dedup();
         let swings = |parameter: f64| swings(&self.driven, parameter).unwrap_or(f64::NAN);
         let mut known: Vec<[f64; 2]> = values.into_iter().map(|p| [p, swings(p)]).collect();
+        let countable = known.iter().filter(|point| !point[1].is_nan());
+        let slowest = countable.min_by(|one, other| one[1].total_cmp(&other[1]));
+        let slowest = slowest.map_or(low, |point| point[0]);
         let mut added = Vec::new();
         while added.len() < MOST {
             let wide = known.windows(2).enumerate().filter(|(_, pair)| is_wide(pair));
@@ -66,7 +83,7 @@ impl PreparedRequest<'_> {
                 _ => gaps.push([pair[0][0], pair[1][0]]),
             }
         }
-        Coverage { added, gaps }
+        Coverage { added, gaps, slowest }
     }
 }
 
@@ -133,18 +150,20 @@ mod tests {
     fn a_strong_drive_has_gaps_and_a_weak_one_has_none() {
         let equation = "x'' + x'/10 + x + x^3 = F*cos(2*t)";
         let steps: Vec<f64> = (0..=20).map(|step| f64::from(step) * 5e4).collect();
-        let Coverage { added, gaps } = coverage(equation, "F", [0.0, 1e6], &steps);
+        let Coverage { added, gaps, .. } = coverage(equation, "F", [0.0, 1e6], &steps);
         assert!(added.iter().any(|value| *value < 10.0) && added.len() == 24, "{added:?}");
         assert!(gaps.len() == 1 && gaps[0][0] > 1e3 && gaps[0][1] == 1e6, "{gaps:?}");
         let driven = ResponseRequest::new(equation, "F", [0.0, 1e6], "").expect("a request");
         let asked = PreparedRequest::new(&driven, driven.equations.oscillator().expect("one"))
             .expect("a request");
         // The mean of abs(cos)^(2/3) is Gamma(5/6)/(sqrt(pi) Gamma(4/3)) = 0.7131.
+        let covered = Coverage { added, gaps: gaps.clone(), slowest: 0.0 }.covered([0.0, 1e6]);
+        assert_eq!(covered, Some([0.0, gaps[0][0]]));
         let by_hand = (3.0 * 1e4 * 0.7131_f64).sqrt() / 2.0;
         let found = swings(&asked.driven, 1e6).expect("swings");
         assert!((found / by_hand - 1.0).abs() < 0.01, "{found} {by_hand}");
         let weak = coverage(equation, "F", [0.0, 1.0], &[0.25, 0.5, 0.75]);
-        assert_eq!(weak, Coverage::default());
+        assert!(weak.added.is_empty() && weak.gaps.is_empty(), "{weak:?}");
     }
 
     /// The stiffness of a linear force is the same at every value, and so is that of a drive whose
@@ -156,7 +175,8 @@ mod tests {
             ("x'' + x'/10 + x + x^3 = 10*cos(2*t) - F*x'", "F"),
             ("x'' + x'/10 + sin(x) = F*cos(2*t)", "F"),
         ] {
-            assert_eq!(coverage(equation, parameter, [0.0, 1e6], &[]), Coverage::default());
+            let found = coverage(equation, parameter, [0.0, 1e6], &[]);
+            assert!(found.added.is_empty() && found.gaps.is_empty(), "{found:?}");
         }
     }
 }

@@ -258,9 +258,10 @@ impl PreparedRequest<'_> {
             .map(|point| point.peak)
             .fold(0.0, f64::max);
         // An orbit by shooting is known too well to be mistaken for one beside it.
-        let (other, disturbances) = match self.period_series {
-            Some(_) => (OTHER_THAN_ORBIT, &DISTURBANCES[..]),
-            None => (OTHER, &DISTURBANCES[..3]),
+        let (other, disturbances) = match self.period_series.is_some() || !self.driven.is_balanced()
+        {
+            true => (OTHER_THAN_ORBIT, &DISTURBANCES[..]),
+            false => (OTHER, &DISTURBANCES[..3]),
         };
         let mut budget = self.budget();
         let parts = branches

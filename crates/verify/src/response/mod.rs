@@ -455,9 +455,10 @@ pub struct ResponseDiagram {
     /// Whether the search for coupled motions ended because it had taken as much work as it may, so that
     /// branches may be missing or end early, and bifurcations are not listed.
     pub exhausted: bool,
-    /// The stretches of the range in which the values at which the search for motions began are so far
-    /// apart that the motions of a single coordinate gain more than a swing in a period of the drive from
-    /// one to the next, so that branches may be missing.
+    /// The stretches in which the values at which the search for motions began are so far apart that the
+    /// motions of a single coordinate gain more than a swing in a period of the drive from one to the
+    /// next. Those that lie outside the range of the question are left out, though they were asked for;
+    /// in others branches may be missing.
     pub sparse: Vec<[f64; 2]>,
     /// Whether the computation was completed without an interrupt.
     pub complete: bool,
@@ -513,29 +514,53 @@ pub fn respond(question: &ResponseRequest) -> Result<ResponseDiagram, ResponseEr
             coupled::respond(question, &equations)
         }
         Equations::One(oscillator) => {
-            let mut response = match respond_one(question, oscillator) {
-                Err(error @ ResponseError::NotFollowed { .. }) => {
-                    return followed_from_jump_to_jump(question).unwrap_or(Err(error));
-                }
-                found => found?,
-            };
-            response.set_hopf_criticality();
-            if response.bifurcations.is_empty() && question.along.is_none() {
-                return Ok(response);
-            }
-            let equations = CoupledEquations::new(question.equations.sides())
-                .map_err(|error| ResponseError::Rates(error.to_string()));
-            match question.along {
-                None => Ok(match equations {
-                    Ok(equations) => coupled::with_criticality(response, question, &equations),
-                    Err(_) => response,
-                }),
-                Some(_) => {
-                    let equations = equations?;
-                    let response = coupled::with_criticality(response, question, &equations);
-                    coupled::with_curves(response, question, &equations)
-                }
-            }
+            let (covered, left_out) = covered_part(question, oscillator)?;
+            Ok(respond_in_plane(&covered, oscillator)?.with_sparse(left_out))
+        }
+    }
+}
+
+/// A request for the part of the range that a search covers, with the parts that are left out: there the
+/// motion gains many swings from one start of the search to the next.
+fn covered_part(
+    question: &ResponseRequest,
+    oscillator: &Oscillator,
+) -> Result<(ResponseRequest, Vec<[f64; 2]>), ResponseError> {
+    let [low, high] = question.range;
+    let coverage = PreparedRequest::new(question, oscillator)?.coverage_of_search();
+    let Some([from, to]) = coverage.covered(question.range) else {
+        return Ok((question.clone(), vec![]));
+    };
+    let left_out = [[low, from], [to, high]].into_iter().filter(|[low, high]| low < high);
+    Ok((ResponseRequest { range: [from, to], ..question.clone() }, left_out.collect()))
+}
+
+/// The response of a single coordinate, with what follows from its branches.
+fn respond_in_plane(
+    question: &ResponseRequest,
+    oscillator: &Oscillator,
+) -> Result<ResponseDiagram, ResponseError> {
+    let mut response = match respond_one(question, oscillator) {
+        Err(error @ ResponseError::NotFollowed { .. }) => {
+            return followed_from_jump_to_jump(question).unwrap_or(Err(error));
+        }
+        found => found?,
+    };
+    response.set_hopf_criticality();
+    if response.bifurcations.is_empty() && question.along.is_none() {
+        return Ok(response);
+    }
+    let equations = CoupledEquations::new(question.equations.sides())
+        .map_err(|error| ResponseError::Rates(error.to_string()));
+    match question.along {
+        None => Ok(match equations {
+            Ok(equations) => coupled::with_criticality(response, question, &equations),
+            Err(_) => response,
+        }),
+        Some(_) => {
+            let equations = equations?;
+            let response = coupled::with_criticality(response, question, &equations);
+            coupled::with_curves(response, question, &equations)
         }
     }
 }
@@ -629,12 +654,14 @@ impl ResponseDiagram {
         self.exhausted || self.branches.len() >= MOST_BRANCHES
     }
 
-    /// This response with the stretches in which its search was sparse.
-    fn with_sparse(self, sparse: Vec<[f64; 2]>) -> Self {
-        match sparse.is_empty() {
-            true => self,
-            false => Self { sparse, verdict: Verdict::Fail, ..self },
+    /// This response with stretches in which its search was sparse, or that it leaves out.
+    fn with_sparse(mut self, sparse: Vec<[f64; 2]>) -> Self {
+        if !sparse.is_empty() {
+            self.verdict = Verdict::Fail;
+            self.sparse.extend(sparse);
+            self.sparse.sort_by(|one, other| one[0].total_cmp(&other[0]));
         }
+        self
     }
 
     /// This response with the largest error of its points and simulations, and the verdict on it.
@@ -778,5 +805,32 @@ impl ResponseRequest {
             interrupt: Interrupt::default(),
             progress: Progress::default(),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A strong drive takes a cubic spring through more swings in a period than the search has values for:
+    /// that part of the range is left out, and said.
+    #[test]
+    fn a_range_over_decades_is_answered_in_part() {
+        let equation = "x'' + x'/10 + x + x^3 = F*cos(t)";
+        let part = |range: [f64; 2]| {
+            let question = ResponseRequest::new(equation, "F", range, "").expect("a request");
+            let oscillator = question.equations.oscillator().expect("one");
+            let (covered, left_out) = covered_part(&question, oscillator).expect("a part");
+            (covered.range, left_out)
+        };
+        let ([from, to], left_out) = part([0.0, 1e6]);
+        assert_eq!((from, left_out), (0.0, vec![[to, 1e6]]));
+        // By hand, n = sqrt(3 F^(2/3) 0.7131) swings: 24 values are one swing apart from n = 1 on.
+        assert!((20.0..27.0).contains(&((3.0 * 0.7131_f64).sqrt() * to.cbrt())), "{to}");
+        let ([from, to], left_out) = part([-1e6, 1e6]);
+        assert!(-from > 500.0 && to > 500.0, "{from} {to}");
+        assert_eq!(left_out, vec![[-1e6, from], [to, 1e6]]);
+        assert_eq!(part([0.0, 100.0]), ([0.0, 100.0], vec![]));
+        assert_eq!(part([0.0, 4000.0]), ([0.0, 4000.0], vec![]));
     }
 }

@@ -326,7 +326,7 @@ impl<'a> PreparedRequest<'a> {
 
     /// Verifies every point of the branches and locates the bifurcations between them; branches
     /// that cross are followed and added.
-    fn judged_paths(
+    pub(super) fn judged_paths(
         &self,
         balance: &DrivenBalance,
         seeds: &[Seed],

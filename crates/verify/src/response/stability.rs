@@ -493,6 +493,12 @@ pub fn settle_together(
     all
 }
 
+/// The distance below which two states that are so far from zero may differ by rounding alone.
+fn rounding([x, v]: &[f64; 2], omega: f64) -> f64 {
+    const PLACES: f64 = 64.0 * f64::EPSILON;
+    PLACES * x.abs().max(v.abs() / omega)
+}
+
 /// A simulation in progress.
 struct Settling {
     parameter: f64,
@@ -584,8 +590,9 @@ impl Settling {
         let away = path.positions(32).into_iter().chain([end[0]]);
         let extent = away.fold(0.0_f64, |most, position| most.max((position - begin[0]).abs()));
         self.states.push(end);
-        // A state of rest counts as periodic.
-        self.quiet = if moved <= closely * extent.max(1e-12) { self.quiet + 1 } else { 0 };
+        // A state of rest counts as periodic, also far from zero.
+        let is_quiet = moved <= (closely * extent.max(1e-12)).max(rounding(&begin, omega));
+        self.quiet = if is_quiet { self.quiet + 1 } else { 0 };
         Some(path)
     }
 
@@ -614,7 +621,8 @@ impl Settling {
             Some((one[0] - other[0]).hypot((one[1] - other[1]) / omega))
         };
         let end = states.len() - 1;
-        let repeats = |count: usize| apart(end, count).is_some_and(|apart| apart <= 1e-3 * extent);
+        let same = (1e-3 * extent).max(rounding(&state, omega));
+        let repeats = |count: usize| apart(end, count).is_some_and(|apart| apart <= same);
         // A slowly decaying disturbance repeats itself, too, if its frequency is a fraction of that of
         // the drive.
         let dies_out = |count: usize| {
@@ -633,5 +641,28 @@ impl Settling {
             positions,
             peak,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::response::{PreparedRequest, ResponseRequest};
+
+    /// A pendulum that has turned over comes to rest a turn away, where positions have fewer digits after the
+    /// point: it repeats itself after one period.
+    #[test]
+    fn rest_a_turn_away_repeats_itself() {
+        let equation = "x'' + x'/5 + (1 + w*cos(2*t))*sin(x) = 0";
+        let question = ResponseRequest::new(equation, "w", [0.1, 0.2], "").expect("a request");
+        let asked = PreparedRequest::new(&question, question.equations.oscillator().expect("one"))
+            .expect("a request");
+        let turns = 6.0 * std::f64::consts::PI;
+        let start =
+            SettlingStart { start: [turns + 0.3, 0.0], parameter: 0.1, most: 250, known: vec![] };
+        let settled = settle_together(&asked.driven, &[start], 1e-4, &mut asked.budget());
+        let settled = settled.into_iter().next().flatten().expect("a motion");
+        assert_eq!(settled.returns_after, Some(1));
+        assert!((settled.state[0] - turns).abs() < 1e-12 && settled.peak < 1e-12);
     }
 }

@@ -17,7 +17,7 @@
 use nalgebra::{DVector, Matrix2, Matrix3, Vector3};
 
 use super::balance::DrivenBalance;
-use super::branches::largest;
+use super::branches::{KnownMotion, largest};
 use super::continuation::{BranchEnd, BranchNode, BranchPath};
 use super::jump::{StopCondition, VariationalMotion, follow};
 use super::seeds::Seed;
@@ -174,6 +174,31 @@ impl<'a> PeriodMap<'a> {
         self.corrected(&self.scaled(start, parameter), &Vector3::new(0.0, 0.0, 1.0))
     }
 
+    /// Motions a little way along the other branch through a crossing, one on either side, each with its
+    /// tangent away from it: in the direction in which the map has a second null vector, at right angles to
+    /// that of the known branch.
+    fn crossing(&self, at: &ScaledPoint, tangent: &ScaledPoint) -> Vec<ShootingOrbit> {
+        const APART: f64 = 0.02;
+        let (Some(course), Some(by_parameter)) = (self.period(at), self.by_parameter(at)) else {
+            return vec![];
+        };
+        let derivatives = self.bordered(&course, by_parameter, &ScaledPoint::zeros());
+        // The rank is one here, and what is left of the larger row tells the plane of both branches.
+        let rows = [0, 1].map(|index| derivatives.row(index).transpose());
+        let [one, other] = rows.map(|row| row.norm());
+        let normal = if one > other { rows[0] } else { rows[1] };
+        let second = normal.cross(tangent);
+        if !(second.norm() > 0.0 && second.norm().is_finite()) {
+            return vec![];
+        }
+        let second = second.normalize();
+        let found = [1.0, -1.0].map(|sign| {
+            let direction = second * sign;
+            self.corrected(&(at + direction * APART), &direction)
+        });
+        found.into_iter().flatten().collect()
+    }
+
     /// The motions in the direction of the tangent, the first included, and the reason why they
     /// end. `met` tells whether a motion lies on another branch.
     fn walk(
@@ -325,15 +350,13 @@ impl PreparedRequest<'_> {
             let Some(shot) = map.shoot(start, seed.parameter) else {
                 continue;
             };
-            let (start, _) = map.start(&shot.at);
-            let known = |path: &BranchPath| {
-                self.lies_on(balance, path, start, seed.parameter, map.sizes[0])
-            };
             // An equilibrium is not a motion.
             let own = shot.course.stuck() > 0.0 || !self.driven.is_balanced();
-            if own && shot.course.extent() > 1e-6 * size && !paths.iter().any(known) {
-                let found = self.stuck_branch(balance, &map, shot, paths);
-                paths.extend(found.map(|path| self.ended_at_rest(balance, seeds, path)));
+            let moves = shot.course.extent() > 1e-6 * size;
+            if own && moves && !self.was_known(balance, paths, &map.node(balance, &shot)) {
+                if let Some(path) = self.stuck_branch(balance, &map, shot, paths) {
+                    self.keep(balance, self.ended_at_rest(balance, seeds, path), paths);
+                }
             }
         }
     }
@@ -404,6 +427,44 @@ impl PreparedRequest<'_> {
         (nodes.len() > 1).then_some(BranchPath { nodes, ends: [first, last], mirrored: false })
     }
 
+    /// Follows the branch that crosses one across jumps here, on both sides of it unless one is the image
+    /// of the other.
+    pub(super) fn follow_stuck_crossing(
+        &self,
+        balance: &DrivenBalance,
+        at: &BranchNode,
+        size: f64,
+        paths: &mut Vec<BranchPath>,
+    ) {
+        let Some(truth) = at.truth else { return };
+        let size = balance.core.extent(&at.coefficients).max(0.1 * size);
+        let map = PeriodMap::new(self, size, at.parameter);
+        // The way of this branch, of which the coefficients are linear in position and velocity.
+        let way = balance.core.size();
+        let (along, slope) = (at.tangent.rows(0, way).into_owned(), at.tangent[way]);
+        let aside = balance.phase_point_at(&along, at.parameter, 0.0);
+        let tangent = map.scaled(aside, slope);
+        for shot in map.crossing(&map.scaled(truth.start, at.parameter), &tangent) {
+            let beside = map.node(balance, &shot);
+            if self.was_known(balance, paths, &beside) {
+                continue;
+            }
+            let met = |node: &BranchNode| self.is_met(balance, paths, node);
+            let (shots, end) = map.walk(shot, &met, balance);
+            let outward = shots.iter().map(|shot| map.node(balance, shot));
+            let nodes: Vec<BranchNode> = std::iter::once(at.clone()).chain(outward).collect();
+            // Near the crossing, where branches turn, and at folds a known motion may not be recognised.
+            let known = |quarter: usize| {
+                let node = &nodes[quarter * nodes.len() / 4];
+                self.was_known(balance, paths, node)
+            };
+            if !(1..4).any(known) {
+                let path = BranchPath { nodes, ends: [BranchEnd::Crossing, end], mirrored: false };
+                self.keep(balance, path, paths);
+            }
+        }
+    }
+
     /// Continues a branch beyond one of its ends.
     fn follow_on(
         &self,
@@ -472,6 +533,29 @@ impl PreparedRequest<'_> {
         }
     }
 
+    /// The branch on which a motion across jumps lies, shifted by drive periods or mirrored; `None` if there
+    /// is none.
+    pub(super) fn known_across_jumps(
+        &self,
+        balance: &DrivenBalance,
+        paths: &[BranchPath],
+        node: &BranchNode,
+        start: [f64; 2],
+    ) -> Option<KnownMotion> {
+        let size = balance.core.extent(&node.coefficients);
+        let images = match self.driven.self_excited {
+            true => vec![start],
+            false => self.images(start, node.parameter, size),
+        };
+        let on = |start: [f64; 2]| {
+            paths.iter().position(|path| self.lies_on(balance, path, start, node.parameter, size))
+        };
+        images.into_iter().enumerate().find_map(|(halves, start)| match halves % 2 {
+            0 => on(start).map(|_| KnownMotion::Itself),
+            _ => on(start).map(KnownMotion::Mirrored),
+        })
+    }
+
     /// Whether a motion that does not stick lies on one of these branches.
     fn is_met(&self, balance: &DrivenBalance, paths: &[BranchPath], node: &BranchNode) -> bool {
         let Some(truth) = node.truth else {
@@ -530,5 +614,61 @@ impl PreparedRequest<'_> {
         }
         let shot = map.corrected(&(start + way * part), &(way / length))?;
         Some(map.node(balance, &shot))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::response::ResponseRequest;
+
+    /// A motion across a step of the force loses its symmetry: from the motion alone the lopsided ones are
+    /// found behind the crossing, by the null vector of the map, once with their mirror images. Integrated by
+    /// the classical Runge-Kutta method in small steps they return after a period and not, mirrored, after
+    /// half of one.
+    #[test]
+    fn the_branch_that_crosses_one_across_jumps_is_followed() {
+        let equation = "x'' + x'/10 + x^3 + sgn(x)/5 = F*cos(t)";
+        let question = ResponseRequest::new(equation, "F", [2.3, 2.7], "").expect("a request");
+        let asked = PreparedRequest::new(&question, question.equations.oscillator().expect("one"))
+            .expect("a request");
+        let balance = DrivenBalance::new(&asked.driven, 16);
+        let positions = (0..SAMPLES)
+            .map(|index| 1.8 * (std::f64::consts::TAU * index as f64 / SAMPLES as f64).cos());
+        let seed = Seed {
+            parameter: 2.3,
+            frequency: 1.0,
+            positions: positions.collect(),
+            start: Some([1.83, 0.05]),
+        };
+        let mut paths = vec![];
+        let seeds = [seed];
+        asked.follow_sticking(&balance, &seeds, &mut paths, 1.8);
+        assert_eq!(paths.len(), 1);
+        asked.judged_paths(&balance, &seeds, &mut paths);
+        let [_, lopsided] = &paths[..] else { panic!("{}", paths.len()) };
+        assert!(lopsided.mirrored && lopsided.ends == [BranchEnd::Crossing, BranchEnd::Range]);
+        assert!((lopsided.nodes[0].parameter - 2.47535).abs() < 1e-4);
+        let node = &lopsided.nodes[lopsided.nodes.len() / 2];
+        let start = node.truth.expect("a motion").start;
+        let after = |steps: usize| {
+            let h = std::f64::consts::TAU / 40_000.0;
+            let rate = |t: f64, [x, v]: [f64; 2]| {
+                [v, node.parameter * t.cos() - v / 10.0 - x.powi(3) - x.signum() / 5.0]
+            };
+            let along = |y: [f64; 2], k: [f64; 2], h: f64| [y[0] + h * k[0], y[1] + h * k[1]];
+            (0..steps).fold(start, |y, step| {
+                let t = h * step as f64;
+                let one = rate(t, y);
+                let two = rate(t + 0.5 * h, along(y, one, 0.5 * h));
+                let three = rate(t + 0.5 * h, along(y, two, 0.5 * h));
+                let four = rate(t + h, along(y, three, h));
+                let mean = [0, 1].map(|i| (one[i] + 2.0 * (two[i] + three[i]) + four[i]) / 6.0);
+                along(y, mean, h)
+            })
+        };
+        let apart = |y: [f64; 2], sign: f64| (y[0] - sign * start[0]).hypot(y[1] - sign * start[1]);
+        assert!(apart(after(40_000), 1.0) < 1e-3);
+        assert!(apart(after(20_000), -1.0) > 0.05);
     }
 }

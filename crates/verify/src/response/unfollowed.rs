@@ -110,7 +110,7 @@ impl PreparedRequest<'_> {
     }
 
     /// The starts of a motion, of its shifts by drive periods, and of their mirror images.
-    fn images(&self, start: [f64; 2], parameter: f64, size: f64) -> Vec<[f64; 2]> {
+    pub(super) fn images(&self, start: [f64; 2], parameter: f64, size: f64) -> Vec<[f64; 2]> {
         let period = std::f64::consts::TAU
             / self.driven.frequency_at(parameter)
             / self.question.periods as f64;

@@ -249,32 +249,43 @@ impl CoupledProblem<'_> {
     }
 
     /// A branch of driven motions up to the crossing beyond which its motions are images of those
-    /// before.
+    /// before, or between two of them.
     fn cut_at_shifted(&self, mut branch: OrbitBranch, scale: &[f64]) -> OrbitBranch {
-        for index in 1..branch.orbits.len() {
+        let crossing = |index: usize| {
             let [from, to] = [&branch.orbits[index - 1], &branch.orbits[index]];
             if from.parameter_slope() * to.parameter_slope() >= 0.0 {
-                continue;
+                return None;
             }
             // One of the two may lie on the crossing itself, where it is its own image.
             let before = [index - 1, index.saturating_sub(2)];
             let behind = [index, (index + 1).min(branch.orbits.len() - 1)];
-            let pairs = before.into_iter().flat_map(|one| behind.map(|other| (one, other)));
-            let image = |(one, other): (usize, usize)| {
+            let mut pairs = before.into_iter().flat_map(|one| behind.map(|other| (one, other)));
+            let by_mirror = pairs.find_map(|(one, other)| {
                 self.image_of(&branch.orbits[one], &branch.orbits[other], scale)
-            };
-            let Some(by_mirror) = { pairs }.find_map(image) else { continue };
+            })?;
+            Some((index, by_mirror))
+        };
+        let crossings: Vec<(usize, bool)> =
+            (1..branch.orbits.len()).filter_map(crossing).take(2).collect();
+        match crossings[..] {
+            [] => {}
             // The longer part has all motions.
-            let ends = branch.ends;
-            if index > branch.orbits.len() / 2 {
-                branch.orbits.truncate(index);
-                branch.ends = [ends[0], BranchEnd::Crossing];
-            } else {
-                branch.orbits.drain(..index);
-                branch.ends = [BranchEnd::Crossing, ends[1]];
+            [(index, by_mirror)] => {
+                if index > branch.orbits.len() / 2 {
+                    branch.orbits.truncate(index);
+                    branch.ends[1] = BranchEnd::Crossing;
+                } else {
+                    branch.orbits.drain(..index);
+                    branch.ends[0] = BranchEnd::Crossing;
+                }
+                branch.mirrored |= by_mirror;
             }
-            branch.mirrored |= by_mirror;
-            break;
+            [(from, one), (to, other), ..] => {
+                branch.orbits.truncate(to);
+                branch.orbits.drain(..from);
+                branch.ends = [BranchEnd::Crossing; 2];
+                branch.mirrored |= one || other;
+            }
         }
         branch
     }

@@ -21,12 +21,10 @@ use crate::system::LANES;
 /// Number of values of the parameter at which simulations begin.
 const VALUES: u32 = 5;
 
-/// Radii of the starts about the origin, relative to the largest motion, of motions of up to two periods of
-/// the drive and of those of more, of which the basins are smaller; and the number of values of
+/// Radii of the starts about the origin, relative to the largest motion, and the number of values of
 /// the parameter for each of those above at which simulations begin there: a branch apart from
 /// others may be short, but simulations from many places come to its stable motions.
 const RADII: [f64; 2] = [0.5, 1.3];
-const RADII_OF_SEVERAL: [f64; 4] = [0.4, 0.7, 1.0, 1.3];
 const FINER: u32 = 5;
 
 /// The greatest speed of free motions between -size and size, of which one rests at the highest place of
@@ -97,8 +95,8 @@ impl PreparedRequest<'_> {
         let around = if self.driven.undamped { vec![] } else { self.finer_values() };
         let covered = self.coverage_of_search();
         let added = covered.added;
-        let starts = values.len()
-            + (around.len() + added.len()) * self.radii().len() * self.speeds_of_starts();
+        let starts =
+            values.len() + (around.len() + added.len()) * RADII.len() * self.speeds_of_starts();
         self.question.progress.begin(starts);
         let mut found = Search {
             motions: InitialMotions { gaps: covered.gaps, ..InitialMotions::default() },
@@ -259,11 +257,6 @@ impl PreparedRequest<'_> {
         self.add_settled(&without, found);
     }
 
-    /// The radii of starts all around.
-    fn radii(&self) -> &'static [f64] {
-        if self.question.periods > 2 { &RADII_OF_SEVERAL } else { &RADII }
-    }
-
     /// The number of speeds that starts all around have at each place: that of the drive, and for motions
     /// of several periods, which swing with a frequency of their own, that of a free swing.
     fn speeds_of_starts(&self) -> usize {
@@ -274,32 +267,26 @@ impl PreparedRequest<'_> {
     /// and velocity, in proportion to a size.
     fn search_around(&self, values: &[f64], size: f64, found: &mut Search) {
         /// Parts of a turn from one value to the next, which leave no direction out (the golden
-        /// section), and from one speed to the other.
-        const TURNS: [f64; 2] = [0.618_034, 0.25];
-        let radii = self.radii();
-        // From one radius to the next: of two they lie opposite, of more none at right angles.
-        let of_radius = if radii.len() > 2 { 0.3 } else { 0.5 };
-        let start = |[speed, ring]: [usize; 2], (index, parameter): (usize, &f64)| {
+        /// section), from one radius to the other, and from one speed to the other.
+        const TURNS: [f64; 3] = [0.618_034, 0.5, 0.25];
+        let around = |(index, parameter): (usize, &f64)| {
             let parameter = *parameter;
             let omega = self.driven.frequency_at(parameter) * self.question.periods as f64;
-            let [indices, rings, speeds] = [index, ring, speed].map(|count| count as f64);
-            let turn = TURNS[0] * indices + of_radius * rings + TURNS[1] * speeds;
-            let (sine, cosine) = (TAU * turn).sin_cos();
-            let size = radii[ring] * size;
-            let speed = match speed {
-                0 => size * omega,
-                _ => swing_speed(&self.driven, parameter, size),
-            };
-            PlannedSimulation { seed: None, start: [size * cosine, -speed * sine], parameter }
+            let places = (0..self.speeds_of_starts())
+                .flat_map(|speed| (0..RADII.len()).map(move |ring| [speed, ring]));
+            places.map(move |[speed, ring]| {
+                let turns = [index, ring, speed].map(|count| count as f64);
+                let turn: f64 = TURNS.iter().zip(turns).map(|(part, count)| part * count).sum();
+                let (sine, cosine) = (TAU * turn).sin_cos();
+                let size = RADII[ring] * size;
+                let speed = match speed {
+                    0 => size * omega,
+                    _ => swing_speed(&self.driven, parameter, size),
+                };
+                PlannedSimulation { seed: None, start: [size * cosine, -speed * sine], parameter }
+            })
         };
-        // All of the range from one place, then from the next: where the budget ends, no part of it is left
-        // out.
-        let places = (0..self.speeds_of_starts())
-            .flat_map(|speed| (0..radii.len()).map(move |ring| [speed, ring]));
-        let planned: Vec<PlannedSimulation> = places
-            .flat_map(|place| values.iter().enumerate().map(move |value| (place, value)))
-            .map(|(place, value)| start(place, value))
-            .collect();
+        let planned: Vec<PlannedSimulation> = values.iter().enumerate().flat_map(around).collect();
         for planned in planned.chunks(4 * LANES) {
             if self.question.interrupt.is_requested() {
                 return;

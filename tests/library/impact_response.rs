@@ -159,7 +159,7 @@ fn kicks_have_their_closed_form() {
 /// section 2.4).
 #[test]
 fn an_impact_may_fall_on_the_beginning_of_a_period() {
-    let request = question("x'' + g = 0", &[("x > A*sin(t)", "4/5")], ("A", [0.34, 0.4]), "g = 1");
+    let request = question("x'' + g = 0", &[("x > A*sin(t)", "4/5")], ("A", [0.34, 1.1]), "g = 1");
     let found = respond(&request).expect("a response");
     let once: Vec<usize> = (0..found.branches.len())
         .filter(|index| found.branches[*index].points[0].impacts == 1)

@@ -159,9 +159,19 @@ impl CoupledProblem<'_> {
                     break;
                 }
                 let scale = with_size(&known.scale, n);
+                // What rests on a wall tells little of the size of the motions that leave it.
+                const BEYOND_REST: f64 = 4.0;
+                let rests = |orbit: &Orbit| orbit.kept.encounters.stuck > 0.0;
+                let mut branches = known.branches.iter();
+                let any_rests = !self.walls.is_empty()
+                    && branches.any(|branch| branch.orbits.iter().any(rests));
+                let reach = if any_rests { BEYOND_REST } else { 1.0 };
                 let start = match index {
                     0 => vec![0.0; n],
-                    index => self.random_state(place * starts + index, parameter, &scale),
+                    index => {
+                        let reach: Vec<f64> = scale.iter().map(|size| reach * size).collect();
+                        self.random_state(place * starts + index, parameter, &reach)
+                    }
                 };
                 let settled = self.settle(start, parameter, &scale, SETTLING[0]);
                 let Some(settled) = settled else { continue };

@@ -163,6 +163,10 @@ pub(in crate::response::coupled) fn onto_walls(
             }
             for (k, value) in state.iter_mut().enumerate() {
                 *value -= directions[(row, k)] * height / along;
+                // What is left of a zero would have no digits.
+                if value.abs() < f64::EPSILON * sizes[k] {
+                    *value = 0.0;
+                }
             }
         }
     }

@@ -146,6 +146,26 @@ fn a_cradle_hands_the_speed_on() {
     assert_eq!(motion.walls.order_matters, Some(0.5));
 }
 
+/// What begins on a table where the table passes the origin rests there for many periods, however its place and
+/// speed are rounded.
+#[test]
+fn a_start_on_a_table_is_a_rest_to_rounding() {
+    let speed = 0.012_f64 * 20.0;
+    for x in [0.0, 1e-18, -1e-18] {
+        for v in [speed, speed.next_up(), speed.next_down()] {
+            let mut course = course("x'' + 9.81 = 0", &[("x > 0.012*sin(20*t)", "4/5")], "");
+            course.begin("x".into(), x).unwrap();
+            course.begin("x'".into(), v).unwrap();
+            course.duration = 10.0;
+            let motion = course.follow().unwrap();
+            assert_eq!(motion.reason(), PathEnd::Reached, "{x:e} {v}");
+            assert!(motion.walls.impacts.is_empty());
+            let end = motion.states_at(10.0).unwrap();
+            assert!((end[0] - 0.012 * 200.0_f64.sin()).abs() < 1e-12, "{end:?}");
+        }
+    }
+}
+
 /// A ball at rest on a table `Z sin(w t)` is carried until the table falls faster than it does:
 /// `sin(w t) = g/(Z w^2)`; then it flies.
 #[test]

@@ -353,10 +353,12 @@ impl PreparedRequest<'_> {
             // An equilibrium is not a motion.
             let own = shot.course.stuck() > 0.0 || !self.driven.is_balanced();
             let moves = shot.course.extent() > 1e-6 * size;
-            if own && moves && !self.was_known(balance, paths, &map.node(balance, &shot)) {
-                if let Some(path) = self.stuck_branch(balance, &map, shot, paths) {
-                    self.keep(balance, self.ended_at_rest(balance, seeds, path), paths);
-                }
+            if own
+                && moves
+                && !self.was_known(balance, paths, &map.node(balance, &shot))
+                && let Some(path) = self.stuck_branch(balance, &map, shot, paths)
+            {
+                self.keep(balance, self.ended_at_rest(balance, seeds, path), paths);
             }
         }
     }

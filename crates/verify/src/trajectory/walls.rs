@@ -203,11 +203,20 @@ impl CompiledWalls {
         }
     }
 
-    /// The size of a gap: that of the positions in it, whose rounding it has, or the largest so far.
+    /// The size of a gap: that of the positions in it, whose rounding it has, or the largest so far. Where
+    /// all of these are zero, as at the beginning of a rest on a wall that passes the origin, it is a small
+    /// part of the height of a flight at the speeds in it.
     fn size_of_gap(&self, at: &AtWall, state: &[f64], largest: f64) -> f64 {
-        let [coordinates, _] = self.counts;
-        let parts = at.normal.iter().zip(&state[..coordinates]).map(|(n, q)| (n * q).abs());
-        parts.fold(largest, f64::max)
+        const PART_OF_FLIGHT: f64 = 1e-3;
+        let [coordinates, states] = self.counts;
+        let in_gap = |values: &[f64]| {
+            let parts = at.normal.iter().zip(values).map(|(n, value)| (n * value).abs());
+            parts.fold(0.0, f64::max)
+        };
+        let speed = in_gap(&state[coordinates..states]);
+        let flight = PART_OF_FLIGHT * speed * speed / at.free.abs();
+        let flight = if flight.is_finite() { flight } else { 0.0 };
+        largest.max(in_gap(&state[..coordinates])).max(flight)
     }
 
     /// The first wall behind which a motion is, beyond rounding.

@@ -90,6 +90,10 @@ impl Known {
     }
 }
 
+/// The states of the images of a motion at one phase: of those shifted by periods of the drive, and of the mirrored
+/// ones.
+type Images = [Vec<Vec<f64>>; 2];
+
 impl CoupledProblem<'_> {
     /// Whether no more branches are followed.
     pub(super) fn is_done(&self, known: &Known) -> bool {
@@ -559,9 +563,10 @@ impl CoupledProblem<'_> {
         self.push_branch(orbit, anchor, known);
     }
 
-    /// The states in which an orbit passes a phase in each drive period, and those of its mirror images, half a period of the drive later. A motion that nothing drives may begin
-    /// anywhere on itself: its only image is the mirrored one.
-    fn images(&self, orbit: &Orbit, section: f64, scale: &[f64]) -> Option<[Vec<Vec<f64>>; 2]> {
+    /// The states in which an orbit passes a phase in each drive period, and those of its mirror images, half a
+    /// period of the drive later. A motion that nothing drives may begin anywhere on itself: its only image is the
+    /// mirrored one.
+    fn images(&self, orbit: &Orbit, section: f64, scale: &[f64]) -> Option<Images> {
         let start = self.state_at_phase(orbit, section, scale)?;
         let negative = |state: Vec<f64>| state.into_iter().map(|value| -value).collect();
         match self.kind {
@@ -625,7 +630,7 @@ impl CoupledProblem<'_> {
         const SAME: f64 = 1e-5;
         let (n, parameter) = (self.states.len(), orbit.parameter());
         // The images of the orbit, at the phases at which known ones begin.
-        let mut images: Vec<(f64, Option<[Vec<Vec<f64>>; 2]>)> = Vec::new();
+        let mut images: Vec<(f64, Option<Images>)> = Vec::new();
         let sizes = self.state_sizes(&orbit.kept.travel, &known.scale);
         let apart = |one: &[f64], other: &[f64]| {
             let each = one.iter().zip(other).zip(&sizes).enumerate();

@@ -235,6 +235,11 @@ fn in_the_amplitude(
         return None;
     }
     coefficients.iter_mut().for_each(|c| *c /= linear);
+    // Where all low powers are rounding, as of `asin(sin(x))`, so are the high ones that have grown from it.
+    let mut low = coefficients[2..=few].iter().filter(|c| **c != 0.0).peekable();
+    if low.peek().is_some() && low.all(|c| c.abs() < 1e-13) {
+        return None;
+    }
     // About an equilibrium that is rounded, an odd force is not quite odd.
     let even = || (2..highest + 1).step_by(2);
     if even().all(|k| coefficients[k].abs() < 1e-14) {

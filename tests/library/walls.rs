@@ -146,7 +146,7 @@ fn a_cradle_hands_the_speed_on() {
     assert_eq!(motion.walls.order_matters, Some(0.5));
 }
 
-/// What begins on a table where the table passes the origin rests there for many periods, however its place and
+/// A body that begins on a table where the table passes the origin rests there for many periods, however its place and
 /// speed are rounded.
 #[test]
 fn a_start_on_a_table_is_a_rest_to_rounding() {

@@ -394,7 +394,7 @@ mod tests {
         );
     }
 
-    /// Where three periods of a drive lock an oscillation there are six images of its stable and of its
+    /// An oscillation that three periods of a drive lock has six images of its stable and of its
     /// unstable phase, and one loop leads through all: it is closed behind the first two.
     #[test]
     fn a_loop_through_its_own_images_is_closed_at_the_first() {

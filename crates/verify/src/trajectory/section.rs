@@ -226,8 +226,7 @@ impl Trajectory {
 
 impl TrajectorySegment {
     /// The least and the greatest value of a coordinate from a time on, at both ends and where it turns.
-    /// Where there is no series of it, it turns between two of many values with velocities of opposite
-    /// signs.
+    /// A coordinate without a series turns between two of many values with velocities of opposite signs.
     fn range(&self, [coordinate, velocity]: [usize; 2], from: f64) -> [f64; 2] {
         /// Number of values per step of the integrator.
         const VALUES: usize = 8;

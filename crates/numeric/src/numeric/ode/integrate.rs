@@ -467,6 +467,16 @@ struct Leg<'r, 'a, S: Sample> {
     options: &'r IntegrationOptions,
 }
 
+/// A step that ends at an event.
+enum StepToEnd<S: Sample> {
+    /// The step, and the event: the state, its index and whether its function rises.
+    Found(TrajectoryStep<S>, (S, usize, bool)),
+    /// One step does not lead there with the error allowed: shorter ones, the first of this length.
+    TooLong(f64),
+    /// No event ends the leg, or it is not met so: a motion that just grazes a surface.
+    None,
+}
+
 enum LegEnd<S> {
     Stopped(StopReason),
     Switched(usize, S),
@@ -540,9 +550,33 @@ impl<S: Sample> Leg<'_, '_, S> {
                 continue;
             }
             let moved = first.then(|| self.extrapolated(&state, step.length));
+            let before = watches.clone();
             let Some(happenings) = self.located_events(&step, &mut watches, moved.as_ref()) else {
                 return LegEnd::Stopped(StopReason::NonFinite { time });
             };
+            let (step, happenings) =
+                match self.step_to_end(scheme, (&state, step.length), &happenings) {
+                    StepToEnd::None => (step, happenings),
+                    StepToEnd::TooLong(shorter) => {
+                        match self.solver(scheme, &state, shorter) {
+                            Some(smaller) => solver = smaller,
+                            None => return LegEnd::Stopped(self.failure(time)),
+                        }
+                        watches = before;
+                        continue;
+                    }
+                    StepToEnd::Found(until, end) => {
+                        watches = before;
+                        let found = self.located_events(&until, &mut watches, moved.as_ref());
+                        let Some(mut happenings) = found else {
+                            return LegEnd::Stopped(StopReason::NonFinite { time });
+                        };
+                        happenings
+                            .retain(|(at, event, _)| *event != end.1 && at.time() < end.0.time());
+                        happenings.push(end);
+                        (until, happenings)
+                    }
+                };
             trajectory.steps.push(step);
             trajectory.end = next.clone();
             if let Some(end) = self.recorded(happenings, trajectory) {
@@ -612,6 +646,58 @@ impl<S: Sample> Leg<'_, '_, S> {
         }
         let asked = self.options.interrupt.is_requested();
         asked.then_some(StopReason::Interrupted { time })
+    }
+
+    /// Looks for a step that ends at the first event that ends the leg. The interpolant by which the
+    /// event was found has a lower order than the step; and where another force acts beyond the event,
+    /// it knows that force already. The length of the step follows by Newton's method, mostly in one
+    /// step.
+    fn step_to_end<M: OrdinaryNumericalMethod<f64, S::Values>>(
+        &self,
+        scheme: &Scheme<M, S::Values>,
+        (start, longest): (&S, f64),
+        happenings: &[(S, usize, bool)],
+    ) -> StepToEnd<S> {
+        /// Change of the length, relative to it, below which it is the last: the rest is a straight
+        /// line.
+        const LAST: f64 = 1e-8;
+        /// Largest number of steps, for a surface that is barely reached.
+        const MOST: usize = 16;
+        let ends = |(_, event, _): &&(S, usize, bool)| {
+            !matches!(self.events[*event].action, Action::Record)
+        };
+        let Some((found, index, rising)) = happenings.iter().find(ends) else {
+            return StepToEnd::None;
+        };
+        let value = |state: &S| (self.events[*index].function)(state);
+        let shortest = 64.0 * f64::EPSILON * start.time().abs();
+        let mut length = found.time() - start.time();
+        for _ in 0..MOST {
+            if !(length > shortest && length <= longest) {
+                return StepToEnd::None;
+            }
+            let Some(mut solver) = self.solver(scheme, start, length) else {
+                return StepToEnd::None;
+            };
+            let outcome = solver.step(&self.equations);
+            if outcome.is_err() || self.equations.non_finite.get() {
+                return StepToEnd::None;
+            }
+            if matches!(solver.status(), Status::RejectedStep) {
+                return StepToEnd::TooLong(0.5 * length);
+            }
+            let Some((step, end)) = self.accepted(scheme, &mut solver, start) else {
+                return StepToEnd::None;
+            };
+            let beyond = LAST * length;
+            let slope = (value(&self.extrapolated(&end, beyond)) - value(&end)) / beyond;
+            let left = -value(&end) / slope;
+            if left.abs() <= beyond {
+                return StepToEnd::Found(step, (self.extrapolated(&end, left), *index, *rising));
+            }
+            length += left;
+        }
+        StepToEnd::None
     }
 
     /// Records the events of a step, up to the first that ends the leg: the path then ends there.

@@ -403,6 +403,33 @@ mod tests {
         assert!(matches!(path.stop_reason(), StopReason::NonFinite { time } if time < 1.0));
     }
 
+    /// A stop of stiffness 1e6 that is touched for a moment, so that a step goes past the touch: its
+    /// interpolant knows the force there, the motion up to the stop does not. v^2 = A^2 - d^2. A
+    /// touch that hides between the stages of a step is not met at all, which is rare.
+    #[test]
+    fn a_stop_is_met_as_the_motion_up_to_it_leads_however_short_the_touch() {
+        let (stop, depth): (f64, f64) = (0.5, 2e-7);
+        let amplitude = stop + depth;
+        let speed = (depth * (amplitude + stop)).sqrt();
+        for (tolerance, within) in [(1e-10, 1e-2), (1e-12, 1e-4)] {
+            let mut met = 0;
+            for part in 0..100 {
+                let phase = 3.0 + 0.01 * f64::from(part);
+                let (x, v) = (amplitude * phase.cos(), -amplitude * phase.sin());
+                let force = |_: f64, x: f64, _: f64| -x - 1e6 * (x - stop).max(0.0).powf(1.5);
+                let touch = [Event::stop(|_, x, _| x - stop)];
+                let options = IntegrationOptions::with_tolerance(tolerance);
+                let path = integrate(force, State { t: 0.0, x, v }, 5.0, &touch, &options).unwrap();
+                if matches!(path.stop_reason(), StopReason::Event { .. }) {
+                    let error = (path.end().v / speed - 1.0).abs();
+                    assert!(error < within, "{tolerance:e} {phase}: {error:e}");
+                    met += 1;
+                }
+            }
+            assert!(met >= 95, "{tolerance:e}: {met}");
+        }
+    }
+
     #[test]
     fn what_cannot_begin_is_refused() {
         let refuse = |start, end_time, options: IntegrationOptions| {

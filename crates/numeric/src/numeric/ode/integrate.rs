@@ -467,6 +467,10 @@ struct Leg<'r, 'a, S: Sample> {
     options: &'r IntegrationOptions,
 }
 
+/// Change of the length of a step that is to end at an event, relative to it, below which it is the
+/// last: the rest is a straight line.
+const LAST: f64 = 1e-8;
+
 /// A step that ends at an event.
 enum StepToEnd<S: Sample> {
     /// The step, and the event: the state, its index and whether its function rises.
@@ -571,8 +575,12 @@ impl<S: Sample> Leg<'_, '_, S> {
                         let Some(mut happenings) = found else {
                             return LegEnd::Stopped(StopReason::NonFinite { time });
                         };
-                        happenings
-                            .retain(|(at, event, _)| *event != end.1 && at.time() < end.0.time());
+                        // What ends the leg at the same time comes after what was found first.
+                        let last = end.0.time() - LAST * until.length;
+                        happenings.retain(|(at, event, _)| match self.events[*event].action {
+                            Action::Record => at.time() < end.0.time(),
+                            _ => *event != end.1 && at.time() < last,
+                        });
                         happenings.push(end);
                         (until, happenings)
                     }
@@ -658,9 +666,6 @@ impl<S: Sample> Leg<'_, '_, S> {
         (start, longest): (&S, f64),
         happenings: &[(S, usize, bool)],
     ) -> StepToEnd<S> {
-        /// Change of the length, relative to it, below which it is the last: the rest is a straight
-        /// line.
-        const LAST: f64 = 1e-8;
         /// Largest number of steps, for a surface that is barely reached.
         const MOST: usize = 16;
         let ends = |(_, event, _): &&(S, usize, bool)| {

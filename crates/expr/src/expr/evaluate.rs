@@ -8,6 +8,8 @@
 //! factors are: `(x - xc)^(3/2)*H(x - xc)` is 0 on the near side of the barrier, where the power
 //! has no real value.
 
+mod sampled;
+
 use std::collections::{BTreeMap, HashMap};
 
 use num_integer::Integer as _;
@@ -17,6 +19,8 @@ use super::function::Value;
 use super::{Expr, Function, Node};
 use crate::exact::rational::{Integer, Rational, to_f64};
 use crate::symbol::Symbol;
+
+pub use sampled::SampledFunctions;
 
 /// The reason why an expression has no number.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -175,6 +179,12 @@ impl CompiledFunction {
     }
 }
 
+impl From<CompiledFunction> for CompiledFunctions<1> {
+    fn from(CompiledFunction(functions): CompiledFunction) -> Self {
+        functions
+    }
+}
+
 impl<const N: usize> CompiledFunctions<N> {
     /// Translates the expressions; `call` will take the values of these symbols in this order.
     ///
@@ -272,20 +282,27 @@ impl InstructionList {
                 Instruction::Subtract(a, b) => values[a] - values[b],
                 Instruction::Multiply(a, b) => values[a] * values[b],
                 Instruction::Divide(a, b) => values[a] / values[b],
-                Instruction::Gate(gate, _) if values[gate] == 0.0 => 0.0,
-                Instruction::Gate(gate, a) => values[gate] * values[a],
+                Instruction::Gate(a, b) => gate(values[a], values[b]),
                 Instruction::IntegerPower(a, exponent) => integer_power(values[a], exponent),
                 Instruction::SquareRoot(a) => values[a].sqrt(),
-                Instruction::OddRoot(a, exponent, odd) => {
-                    let size = values[a].abs().powf(values[exponent]);
-                    if odd && values[a] < 0.0 { -size } else { size }
-                }
+                Instruction::OddRoot(a, b, odd) => odd_root(values[a], values[b], odd),
                 Instruction::Power(a, exponent) => values[a].powf(values[exponent]),
                 Instruction::Unary(function, a) => function(values[a]),
                 Instruction::Binary(function, a, b) => function(values[a], values[b]),
             };
         }
     }
+}
+
+/// Zero if the first is zero, otherwise the product.
+fn gate(gate: f64, value: f64) -> f64 {
+    if gate == 0.0 { 0.0 } else { gate * value }
+}
+
+/// The real root, with the sign of the base if the exponent is odd.
+fn odd_root(base: f64, exponent: f64, odd: bool) -> f64 {
+    let size = base.abs().powf(exponent);
+    if odd && base < 0.0 { -size } else { size }
 }
 
 fn integer_power(base: f64, exponent: u32) -> f64 {

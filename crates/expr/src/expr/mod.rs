@@ -65,7 +65,9 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use crate::exact::rational::Rational;
 use crate::symbol::Symbol;
 
-pub use evaluate::{CompiledFunction, CompiledFunctions, CompiledList, EvaluationError};
+pub use evaluate::{
+    CompiledFunction, CompiledFunctions, CompiledList, EvaluationError, SampledFunctions,
+};
 pub use function::Function;
 // Problem files show the place of an error in the same way.
 pub use parse::excerpt;

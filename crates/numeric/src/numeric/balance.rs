@@ -93,6 +93,27 @@ pub struct LocatedForces {
     rows: Vec<f64>,
 }
 
+/// The forces at every sample of a motion, and their derivatives: for each coordinate the columns of
+/// [`ForceSample::write_row`].
+#[derive(Clone, Debug)]
+pub struct SampledForces {
+    coordinates: usize,
+    columns: DMatrix<f64>,
+}
+
+/// A quantity of [`SampledForces`], of one coordinate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ForceColumn {
+    /// The force.
+    Value,
+    /// Its derivative by the position of a coordinate.
+    ByPosition(usize),
+    /// Its derivative by the velocity of a coordinate.
+    ByVelocity(usize),
+    /// Its derivative by the parameter, the phase being fixed.
+    ByParameter,
+}
+
 /// The residual and its derivatives at a point.
 #[derive(Clone, Debug)]
 pub struct Linearised {
@@ -129,6 +150,28 @@ impl ForceSample {
     }
 }
 
+impl SampledForces {
+    /// No forces at the samples of a balance.
+    pub fn zeros(balance: &HarmonicBalance) -> Self {
+        let coordinates = balance.coordinates;
+        let columns = DMatrix::zeros(balance.samples(), coordinates * balance.width());
+        Self { coordinates, columns }
+    }
+
+    /// The values at all samples of a quantity of a coordinate.
+    pub fn column_mut(&mut self, coordinate: usize, column: ForceColumn) -> &mut [f64] {
+        let (n, samples) = (self.coordinates, self.columns.nrows());
+        let place = coordinate * (2 * n + 3)
+            + match column {
+                ForceColumn::Value => 0,
+                ForceColumn::ByPosition(j) => 1 + j,
+                ForceColumn::ByVelocity(j) => 1 + n + j,
+                ForceColumn::ByParameter => 2 * n + 1,
+            };
+        &mut self.columns.as_mut_slice()[place * samples..][..samples]
+    }
+}
+
 impl LocatedForces {
     /// Adds forces at a phase, given by the integrals over the phase of themselves and of their
     /// derivatives, and the velocities there.
@@ -160,6 +203,12 @@ impl HarmonicBalance {
     /// The number of unknowns of a coordinate: 2 H + 1.
     fn block(&self) -> usize {
         2 * self.harmonics + 1
+    }
+
+    /// The number of columns of a force and its derivatives: itself, n positions, n velocities, the
+    /// parameter and the frequency.
+    fn width(&self) -> usize {
+        2 * self.coordinates + 3
     }
 
     /// The number of unknowns: n (2 H + 1).
@@ -249,12 +298,12 @@ impl HarmonicBalance {
                         _ => [-k * k * a, -k * k * b],
                     }
                 };
-                let waves = self.waves(unknowns, coordinate).enumerate();
-                self.transform.sum_of_waves(waves.map(wave))
+                self.waves(unknowns, coordinate).enumerate().map(wave)
             };
-            let [positions, slopes, curvatures] = [0, 1, 2].map(derivative);
-            let points = positions.into_iter().zip(slopes).zip(curvatures);
-            points.map(|((position, slope), curvature)| [position, slope, curvature]).collect()
+            let pairs = self.transform.sums_of_waves(derivative(0), derivative(1));
+            let curvatures = self.transform.sum_of_waves(derivative(2));
+            let points = pairs.into_iter().zip(curvatures);
+            points.map(|([position, slope], curvature)| [position, slope, curvature]).collect()
         };
         (0..self.coordinates).map(of_coordinate).collect()
     }
@@ -366,40 +415,62 @@ impl HarmonicBalance {
         &self,
         motion: &[Vec<[f64; 3]>],
         [omega, omega_slope]: [f64; 2],
-        mut located: LocatedForces,
+        located: LocatedForces,
         mut force: impl FnMut(f64, &[[f64; 2]], &mut ForceSample),
     ) -> Option<Linearised> {
-        if omega.is_nan() || omega <= 0.0 {
-            return None;
-        }
-        let (n, samples) = (self.coordinates, self.samples());
-        // A column for R_i and for each of its derivatives, coordinate by coordinate.
-        let width = 2 * n + 3;
-        let mut sampled = DMatrix::zeros(samples, n * width);
-        let mut scale = 0.0_f64;
+        let (n, width) = (self.coordinates, self.width());
+        let mut forces = SampledForces::zeros(self);
         let mut sample = ForceSample::zeros(n);
         let mut state = vec![[0.0; 2]; n];
-        let step = TAU / samples as f64;
-        for index in 0..samples {
+        let step = TAU / self.samples() as f64;
+        for index in 0..self.samples() {
             for (state, motion) in state.iter_mut().zip(motion) {
                 let [position, by_phase, _] = motion[index];
                 *state = [position, omega * by_phase];
             }
             force(step * index as f64, &state, &mut sample);
             for i in 0..n {
-                let curvature = motion[i][index][2];
-                let by_frequency = (0..n).fold(2.0 * omega * curvature, |sum, j| {
-                    sum + sample.by_velocity[(i, j)] * motion[j][index][1]
+                sample.write_row(i, 0.0, |column, value| {
+                    forces.columns[(index, i * width + column)] = value;
                 });
-                let inertia = omega * omega * curvature;
-                scale = scale.max(inertia.abs()).max(sample.value[i].abs());
-                let first = i * width;
-                sample.write_row(i, by_frequency, |column, value| {
-                    sampled[(index, first + column)] = value;
-                });
-                sampled[(index, first)] += inertia;
-                sampled[(index, first + 2 * n + 1)] += omega_slope * by_frequency;
             }
+        }
+        self.linearised_on(motion, [omega, omega_slope], located, forces)
+    }
+
+    /// The residual and its derivatives on a motion, from the forces at all of its samples, otherwise
+    /// as [`HarmonicBalance::linearised`].
+    pub fn linearised_on(
+        &self,
+        motion: &[Vec<[f64; 3]>],
+        [omega, omega_slope]: [f64; 2],
+        mut located: LocatedForces,
+        SampledForces { columns: mut sampled, .. }: SampledForces,
+    ) -> Option<Linearised> {
+        if omega.is_nan() || omega <= 0.0 {
+            return None;
+        }
+        let (n, samples, width) = (self.coordinates, self.samples(), self.width());
+        let mut scale = 0.0_f64;
+        let mut by_frequency = vec![0.0; samples];
+        for i in 0..n {
+            let columns = &mut sampled.as_mut_slice()[i * width * samples..][..width * samples];
+            for (sum, [_, _, curvature]) in by_frequency.iter_mut().zip(&motion[i]) {
+                *sum = 2.0 * omega * curvature;
+            }
+            for (j, motion) in motion.iter().enumerate() {
+                let by_velocity = &columns[(1 + n + j) * samples..][..samples];
+                let terms = by_frequency.iter_mut().zip(by_velocity).zip(motion);
+                terms.for_each(|((sum, slope), [_, by_phase, _])| *sum += slope * by_phase);
+            }
+            for (value, [_, _, curvature]) in columns.iter_mut().zip(&motion[i]) {
+                let inertia = omega * omega * curvature;
+                scale = scale.max(inertia.abs()).max(value.abs());
+                *value += inertia;
+            }
+            let last = columns[(2 * n + 1) * samples..].iter_mut().zip(&by_frequency);
+            last.for_each(|(by_parameter, term)| *by_parameter += omega_slope * term);
+            columns[(2 * n + 2) * samples..].copy_from_slice(&by_frequency);
         }
         for row in located.rows.chunks_exact_mut(width) {
             row[2 * n + 2] /= omega;

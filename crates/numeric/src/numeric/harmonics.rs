@@ -72,6 +72,13 @@ impl Transform {
 
     /// The harmonics of samples, up to `count`, which is at most half the number of samples.
     pub fn harmonics(&self, values: &[f64], count: usize) -> Harmonics {
+        if let [first, rest @ ..] = values
+            && rest.iter().all(|value| value == first)
+        {
+            let mut cosines = vec![0.0; count + 1];
+            cosines[0] = 2.0 * first;
+            return Harmonics { cosines, sines: vec![0.0; count + 1] };
+        }
         let mut parts: Vec<Complex<f64>> =
             values.iter().map(|value| Complex::from(*value)).collect();
         self.0.process(&mut parts);
@@ -79,6 +86,24 @@ impl Transform {
         let (cosines, sines) =
             parts.iter().take(count + 1).map(|part| (factor * part.re, -factor * part.im)).unzip();
         Harmonics { cosines, sines }
+    }
+
+    /// Returns two sums of waves at the samples, as [`Transform::sum_of_waves`] does each, by one
+    /// transform of their complex sum; of less than half as many harmonics as samples.
+    pub fn sums_of_waves(
+        &self,
+        one: impl Iterator<Item = [f64; 2]>,
+        other: impl Iterator<Item = [f64; 2]>,
+    ) -> Vec<[f64; 2]> {
+        let samples = self.samples();
+        let mut parts = vec![Complex::from(0.0); samples];
+        // a cos + b sin = (a + ib)/2 e^(-i k theta) + (a - ib)/2 e^(i k theta)
+        for (harmonic, ([a, b], [c, d])) in one.zip(other).enumerate() {
+            parts[harmonic] += 0.5 * Complex::new(a - d, b + c);
+            parts[(samples - harmonic) % samples] += 0.5 * Complex::new(a + d, c - b);
+        }
+        self.0.process(&mut parts);
+        parts.iter().map(|part| [part.re, part.im]).collect()
     }
 
     /// Returns the sum of waves at the samples, from the coefficients `[cosine, sine]` of the
@@ -117,6 +142,12 @@ mod tests {
         }
         let waves = [[0.5, 0.0], [1.0, -2.0], [0.25, 3.0]];
         let there = transform.sum_of_waves(waves.into_iter());
+        let others = waves.map(|[cosine, sine]| [3.0 * sine, 1.0 - cosine]);
+        let apart = transform.sum_of_waves(others.into_iter());
+        let both = transform.sums_of_waves(waves.into_iter(), others.into_iter());
+        for ((one, other), both) in there.iter().zip(&apart).zip(both) {
+            assert!((one - both[0]).abs() < 1e-14 && (other - both[1]).abs() < 1e-14);
+        }
         let back = transform.harmonics(&there, 2);
         assert!((back.cosines[0] - 1.0).abs() < 1e-15 && back.sines[0].abs() < 1e-15);
         for (harmonic, [cosine, sine]) in waves.into_iter().enumerate().skip(1) {

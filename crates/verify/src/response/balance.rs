@@ -13,7 +13,10 @@ use nalgebra::DVector;
 
 use super::driven::Driven;
 
-use crate::numeric::balance::{ForceSample, HarmonicBalance, Linearised, LocatedForces};
+use crate::expr::SampledFunctions;
+use crate::numeric::balance::{
+    ForceColumn, ForceSample, HarmonicBalance, Linearised, LocatedForces, SampledForces,
+};
 use crate::numeric::ode::quadrature::nodes_and_weights;
 use crate::numeric::ode::root::find_root;
 
@@ -24,13 +27,19 @@ pub struct DrivenBalance<'a> {
     pub driven: &'a Driven,
     /// The balance of its one coordinate.
     pub core: HarmonicBalance,
+    /// The force without jumps and its derivatives, at the phases of the samples.
+    forces: Option<SampledFunctions<4>>,
 }
 
 impl<'a> DrivenBalance<'a> {
     /// The equations of `harmonics` harmonics, one at least.
     pub fn new(driven: &'a Driven, harmonics: usize) -> Self {
         let anchor = driven.self_excited.then_some(0);
-        Self { driven, core: HarmonicBalance::new(1, harmonics, driven.smooth, anchor) }
+        let core = HarmonicBalance::new(1, harmonics, driven.smooth, anchor);
+        let samples = core.samples();
+        let phases: Vec<f64> =
+            (0..samples).map(|index| TAU / samples as f64 * index as f64).collect();
+        Self { driven, core, forces: driven.sampled_with_slopes(&phases) }
     }
 
     /// The frequency of a motion.
@@ -58,6 +67,11 @@ impl<'a> DrivenBalance<'a> {
         let driven = self.driven;
         let omega = self.frequency(coefficients, parameter);
         let motion = self.core.motion(coefficients);
+        let frequency = [omega, driven.frequency_slope(parameter)];
+        if let Some(forces) = &self.forces {
+            let sampled = self.sampled(forces, &motion[0], omega, parameter);
+            return self.core.linearised_on(&motion, frequency, LocatedForces::default(), sampled);
+        }
         let above = self.above(coefficients, parameter, omega, &motion[0]);
         let jumps = driven.jump_speed(parameter).is_some();
         let force = |phase: f64, state: &[[f64; 2]], sample: &mut ForceSample| {
@@ -73,8 +87,33 @@ impl<'a> DrivenBalance<'a> {
                 }
             }
         };
-        let frequency = [omega, driven.frequency_slope(parameter)];
         self.core.linearised(&motion, frequency, above, force)
+    }
+
+    /// A force without jumps and its derivatives at the samples of a motion.
+    fn sampled(
+        &self,
+        forces: &SampledFunctions<4>,
+        motion: &[[f64; 3]],
+        omega: f64,
+        parameter: f64,
+    ) -> SampledForces {
+        let positions: Vec<f64> = motion.iter().map(|[position, ..]| *position).collect();
+        let velocities: Vec<f64> = motion.iter().map(|[_, slope, _]| omega * slope).collect();
+        let parameters = vec![parameter; motion.len()];
+        let mut values = vec![];
+        forces.call(&[(0, &positions), (1, &velocities), (3, &parameters)], &mut values);
+        let mut sampled = SampledForces::zeros(&self.core);
+        let columns = [
+            ForceColumn::Value,
+            ForceColumn::ByPosition(0),
+            ForceColumn::ByVelocity(0),
+            ForceColumn::ByParameter,
+        ];
+        for (function, column) in columns.into_iter().enumerate() {
+            sampled.column_mut(0, column).copy_from_slice(forces.column(function, &values));
+        }
+        sampled
     }
 
     /// The height of a jump of the force and of its derivatives, at phases of the motion: an

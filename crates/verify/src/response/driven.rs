@@ -17,7 +17,7 @@ use super::series::{PhaseEquations, solver_in_time};
 use super::{MOST_HARMONICS, ResponseError};
 use crate::exact::Rational;
 use crate::exact::rational::to_f64;
-use crate::expr::{CompiledFunction, CompiledFunctions, Expr, Function, Node};
+use crate::expr::{CompiledFunction, CompiledFunctions, Expr, Function, Node, SampledFunctions};
 use crate::oscillator::Oscillator;
 use crate::symbol::{Symbol, fresh, fresh_stem};
 use crate::system::{Path, PathEnd, Solver, Variations, solve_together};
@@ -456,6 +456,26 @@ impl Driven {
             false => self.with_slopes_on(at, &self.sides(at)),
         };
         (force, slopes)
+    }
+
+    /// f and its derivatives by position, velocity and parameter at these phases, of positions,
+    /// velocities and parameters as arguments 0, 1 and 3; `None` if f jumps.
+    pub(super) fn sampled_with_slopes(&self, phases: &[f64]) -> Option<SampledFunctions<4>> {
+        self.sampled(&self.with_slopes, phases)
+    }
+
+    /// f at these phases, as [`Driven::sampled_with_slopes`].
+    pub(super) fn sampled_force(&self, phases: &[f64]) -> Option<SampledFunctions<1>> {
+        self.sampled(&self.force.clone().into(), phases)
+    }
+
+    fn sampled<const N: usize>(
+        &self,
+        functions: &CompiledFunctions<N>,
+        phases: &[f64],
+    ) -> Option<SampledFunctions<N>> {
+        let sampled = || SampledFunctions::new(functions.clone(), phases.len(), &[(2, phases)]);
+        self.jumps.is_empty().then(sampled)
     }
 
     /// f on these sides of its jumps, 1 above and -1 below.

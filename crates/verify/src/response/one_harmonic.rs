@@ -22,6 +22,7 @@ use nalgebra::DVector;
 
 use super::balance::DrivenBalance;
 use super::driven::Driven;
+use crate::expr::SampledFunctions;
 
 /// Number of amplitudes in a decade, and of phases.
 const EACH_DECADE: i32 = 8;
@@ -39,7 +40,10 @@ struct AddedHarmonic<'a> {
     driven: &'a Driven,
     /// The coefficients of X, the harmonic itself left out.
     known: DVector<f64>,
+    /// The samples of a period, for each phase of the harmonic.
     samples: Vec<Sample>,
+    /// The force without jumps, at all of them.
+    force: Option<SampledFunctions<1>>,
     /// k.
     number: usize,
     /// The frequency omega of the motion.
@@ -47,7 +51,8 @@ struct AddedHarmonic<'a> {
     parameter: f64,
 }
 
-/// A phase, with position and velocity of X and cosine and sine of the harmonic there.
+/// A sample, with position and velocity of X and cosine and sine of the harmonic there,
+/// `cos(k theta - phi)` and `sin(k theta - phi)`.
 struct Sample {
     theta: f64,
     known: [f64; 2],
@@ -75,14 +80,10 @@ pub(super) fn guesses(
     }
     let harmonic = AddedHarmonic::new(balance, known, parameter, number);
     let amplitude = |step: i32| size * 10_f64.powf(f64::from(step) / f64::from(EACH_DECADE));
-    let phase = |index: usize| TAU * index as f64 / PHASES as f64;
     // A row has the phases at one amplitude; the mean goes on from one amplitude to the next.
     let row = |before: &[Option<Residuals>], step: i32| -> Vec<Option<Residuals>> {
-        let at = |index: usize| {
-            let mean = before[index].map_or(0.0, |before| before.mean);
-            harmonic.residuals(amplitude(step), phase(index), mean)
-        };
-        (0..PHASES).map(at).collect()
+        let means = before.iter().map(|before| before.map_or(0.0, |before| before.mean));
+        harmonic.residuals(amplitude(step), means.collect())
     };
     let mut found = Vec::new();
     let mut before = row(&[None; PHASES], -BELOW * EACH_DECADE);
@@ -100,6 +101,11 @@ pub(super) fn guesses(
         before = here;
     }
     found
+}
+
+/// A phase of the harmonic.
+fn phase(index: usize) -> f64 {
+    TAU * index as f64 / PHASES as f64
 }
 
 /// The mean in a cell in which both residuals change their signs.
@@ -125,14 +131,16 @@ impl<'a> AddedHarmonic<'a> {
         known.rows_mut(2 * number - 1, 2).fill(0.0);
         let count = SAMPLES * number.max(balance.driven.periods);
         let sample = |index: usize| {
-            let theta = TAU * index as f64 / count as f64;
-            let (sine, cosine) = (number as f64 * theta).sin_cos();
+            let theta = TAU * (index % count) as f64 / count as f64;
+            let (sine, cosine) = (number as f64 * theta - phase(index / count)).sin_cos();
             let known = balance.phase_point_at(&known, parameter, theta);
             Sample { theta, known, wave: [cosine, sine] }
         };
-        let samples = (0..count).map(sample).collect();
+        let samples: Vec<Sample> = (0..PHASES * count).map(sample).collect();
+        let thetas: Vec<f64> = samples.iter().map(|sample| sample.theta).collect();
+        let force = balance.driven.sampled_force(&thetas);
         let omega = balance.driven.frequency_at(parameter);
-        Self { driven: balance.driven, known, samples, number, omega, parameter }
+        Self { driven: balance.driven, known, samples, force, number, omega, parameter }
     }
 
     /// X with this harmonic and mean.
@@ -145,58 +153,90 @@ impl<'a> AddedHarmonic<'a> {
         motion
     }
 
-    /// The residuals at an amplitude and a phase, with the mean of the force made zero by the secant
-    /// method from a guess; `None` if the force has no value.
-    fn residuals(&self, amplitude: f64, phase: f64, mean: f64) -> Option<Residuals> {
+    /// The residuals at an amplitude and every phase, with the means of the force made zero by the
+    /// secant method from guesses; `None` where the force has no value.
+    fn residuals(&self, amplitude: f64, mut means: Vec<f64>) -> Vec<Option<Residuals>> {
         /// Ratio to the amplitude of a first step of the mean, and the largest number of steps.
         const STEP: f64 = 1e-2;
         const STEPS: usize = 4;
         /// Ratio of the mean of the force to its size below which it is zero.
         const NOTHING: f64 = 1e-3;
-        let (mut mean, mut before) = (mean, None);
-        let mut sums = self.sums(amplitude, phase, mean)?;
+        let is_open = |sums: &Sums| sums.mean.abs() > NOTHING * sums.size;
+        let mut before = vec![None; means.len()];
+        let mut all = self.sums(amplitude, &means);
         for _ in 0..STEPS {
-            if sums.mean.abs() <= NOTHING * sums.size {
+            let open = |index: &usize| all[*index].as_ref().is_some_and(is_open);
+            let open: Vec<usize> = (0..means.len()).filter(open).collect();
+            for index in &open {
+                let (Some(sums), mean) = (&all[*index], &mut means[*index]) else { continue };
+                let step = match before[*index] {
+                    None => STEP * amplitude,
+                    Some((last, force)) => sums.mean * (last - *mean) / (sums.mean - force),
+                };
+                before[*index] = Some((*mean, sums.mean));
+                // A mean that runs away is none.
+                *mean += step.clamp(-amplitude, amplitude);
+            }
+            if open.is_empty() {
                 break;
             }
-            let step = match before {
-                None => STEP * amplitude,
-                Some((last, force)) => sums.mean * (last - mean) / (sums.mean - force),
-            };
-            before = Some((mean, sums.mean));
-            // A mean that runs away is none.
-            mean += step.clamp(-amplitude, amplitude);
-            sums = self.sums(amplitude, phase, mean)?;
+            let mut again = self.sums(amplitude, &means);
+            for index in open {
+                all[index] = again[index].take();
+            }
         }
         let speed = self.number as f64 * self.omega;
-        let in_phase = 2.0 * sums.cosine - speed * speed * amplitude;
-        Some(Residuals { in_phase, out_of_phase: 2.0 * sums.sine, mean })
+        let residuals = |(sums, mean): (Option<Sums>, f64)| {
+            let sums = sums?;
+            let in_phase = 2.0 * sums.cosine - speed * speed * amplitude;
+            Some(Residuals { in_phase, out_of_phase: 2.0 * sums.sine, mean })
+        };
+        all.into_iter().zip(means).map(residuals).collect()
     }
 
-    /// The means of the force, of its products with cosine and sine, and of its size.
-    fn sums(&self, amplitude: f64, phase: f64, mean: f64) -> Option<Sums> {
-        let count = self.samples.len() as f64;
+    /// The means of the force, of its products with cosine and sine, and of its size, at every phase.
+    fn sums(&self, amplitude: f64, means: &[f64]) -> Vec<Option<Sums>> {
+        let count = self.samples.len() / means.len();
         let speed = self.number as f64 * self.omega;
-        let mut sums = Sums::default();
-        let (phase_sine, phase_cosine) = phase.sin_cos();
-        for &Sample { theta, known: [x, v], wave } in &self.samples {
-            // cos(k theta - phi) and sin(k theta - phi)
-            let cosine = wave[0] * phase_cosine + wave[1] * phase_sine;
-            let sine = wave[1] * phase_cosine - wave[0] * phase_sine;
-            let position = x + mean + amplitude * cosine;
-            let at = [position, v - amplitude * speed * sine, theta, self.parameter];
-            let force = self.driven.force(&at);
-            sums.mean += force / count;
-            sums.cosine += force * cosine / count;
-            sums.sine += force * sine / count;
-            sums.size += force.abs() / count;
-        }
-        sums.size.is_finite().then_some(sums)
+        let means = means.iter().flat_map(|mean| std::iter::repeat_n(*mean, count));
+        let (positions, velocities): (Vec<f64>, Vec<f64>) = (self.samples.iter().zip(means))
+            .map(|(Sample { known: [x, v], wave: [cosine, sine], .. }, mean)| {
+                (x + mean + amplitude * cosine, v - amplitude * speed * sine)
+            })
+            .unzip();
+        let forces = self.forces(&positions, &velocities);
+        let of_phase = |(samples, forces): (&[Sample], &[f64])| {
+            let mut sums = Sums::default();
+            for (Sample { wave: [cosine, sine], .. }, force) in samples.iter().zip(forces) {
+                let force = force / count as f64;
+                sums.mean += force;
+                sums.cosine += force * cosine;
+                sums.sine += force * sine;
+                sums.size += force.abs();
+            }
+            sums.size.is_finite().then_some(sums)
+        };
+        self.samples.chunks(count).zip(forces.chunks(count)).map(of_phase).collect()
+    }
+
+    /// The force at every sample.
+    fn forces(&self, positions: &[f64], velocities: &[f64]) -> Vec<f64> {
+        let Some(sampled) = &self.force else {
+            let states = self.samples.iter().zip(positions.iter().zip(velocities));
+            let force = |(sample, (x, v)): (&Sample, (&f64, &f64))| {
+                self.driven.force(&[*x, *v, sample.theta, self.parameter])
+            };
+            return states.map(force).collect();
+        };
+        let parameters = vec![self.parameter; positions.len()];
+        let mut values = vec![];
+        sampled.call(&[(0, positions), (1, velocities), (3, &parameters)], &mut values);
+        sampled.column(0, &values).to_vec()
     }
 }
 
 /// Means over a period.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Sums {
     mean: f64,
     cosine: f64,
@@ -257,7 +297,9 @@ mod tests {
         let balance = DrivenBalance::new(&asked.driven, 3);
         let still = DVector::zeros(balance.core.size());
         let harmonic = AddedHarmonic::new(&balance, &still, 0.02, 1);
-        let found = harmonic.residuals(0.5, 0.3, 0.0).expect("residuals");
-        assert!((found.mean + 0.1 * 0.5 * 0.25).abs() < 1e-3, "{}", found.mean);
+        for found in harmonic.residuals(0.5, vec![0.0; PHASES]) {
+            let mean = found.expect("residuals").mean;
+            assert!((mean + 0.1 * 0.5 * 0.25).abs() < 1e-3, "{mean}");
+        }
     }
 }

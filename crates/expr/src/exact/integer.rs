@@ -124,6 +124,7 @@ impl FromStr for Integer {
 macro_rules! from_primitive {
     ($($primitive:ty)*) => {$(
         impl From<$primitive> for Integer {
+            #[inline]
             fn from(value: $primitive) -> Self {
                 Self(value.into())
             }
@@ -250,10 +251,12 @@ impl Product for Integer {
 }
 
 impl Zero for Integer {
+    #[inline]
     fn zero() -> Self {
         Self(IBig::ZERO)
     }
 
+    #[inline]
     fn is_zero(&self) -> bool {
         self.0.is_zero()
     }

@@ -85,15 +85,15 @@ impl<R: Ring> FourierSeries<R> {
 
     /// The series over a denominator that has nothing in common with all of its numerators;
     /// trailing zeros are dropped.
+    #[inline]
     pub fn in_lowest_terms(
         ring: R,
         denominator: Integer,
         cosine: Vec<R::Element>,
         sine: Vec<R::Element>,
     ) -> Self {
-        let mut series = Self::raw(ring, cosine, sine);
-        series.reduce();
-        series.denominator = denominator;
+        let mut series = Self { ring, denominator, cosine, sine };
+        series.drop_trailing_zeros();
         series
     }
 
@@ -350,14 +350,19 @@ impl<R: Ring> FourierSeries<R> {
         }
     }
 
-    /// Reduces to lowest terms: drops trailing zeros and, if a denominator is left, cancels the
-    /// common factor of all numerators and the denominator. No greatest common divisor is computed
-    /// anywhere else.
-    fn reduce(&mut self) {
+    #[inline]
+    fn drop_trailing_zeros(&mut self) {
         for part in [&mut self.cosine, &mut self.sine] {
             let last = part.iter().rposition(|c| !self.ring.is_certainly_zero(c));
             part.truncate(last.map_or(0, |last| last + 1));
         }
+    }
+
+    /// Reduces to lowest terms: drops trailing zeros and, if a denominator is left, cancels the
+    /// common factor of all numerators and the denominator. No greatest common divisor is computed
+    /// anywhere else.
+    fn reduce(&mut self) {
+        self.drop_trailing_zeros();
         if !self.denominator.is_one() {
             let coefficients = self.cosine.iter_mut().chain(&mut self.sine);
             self.ring.reduce(coefficients, &mut self.denominator);

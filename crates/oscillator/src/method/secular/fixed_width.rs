@@ -5,39 +5,63 @@
 //! than this, and long expansions estimate the growth of their denominators from it.
 //!
 //! Cost: for every product `O(N^2 K^2)` multiplications of words to order `N` with `K` harmonics,
-//! and two pieces of memory for each table, whatever the order; two words hold Duffing's equation to
-//! order 25.
+//! and two pieces of memory for each table, whatever the order. One word holds Duffing's equation to
+//! order 11, two hold it to order 25.
 
 use super::plan::{Plan, PlannedTerm};
 use super::{AmplitudeKind, Detuning, ExpansionScope};
+use crate::exact::Integer;
 use crate::interrupt::Interrupt;
 use crate::series::fixed_width::{
-    HarmonicParity, SeriesBuffer, ShortFraction, ShortSeries, ShortSeriesList,
+    FixedWidth, HarmonicParity, SeriesBuffer, ShortFraction, ShortSeries, ShortSeriesList,
 };
 use crate::series::waves::Wave;
 use crate::solution::AmplitudeConvention;
-use num_traits::ToPrimitive;
+use num_traits::{ToPrimitive as _, cast};
 
 /// The first orders of an expansion in integers of fixed width.
-#[derive(Default)]
-pub(super) struct FirstOrders {
+pub(super) struct FirstOrders<W = i128> {
     /// Number of orders, from zero on; fewer than asked for if a number does not fit. The lists may
     /// be longer.
     pub count: usize,
-    pub displacement: ShortSeriesList,
+    pub displacement: ShortSeriesList<W>,
     /// `W_n` and `omega_n`.
-    pub frequency_squared: Vec<ShortFraction>,
-    pub frequency: Vec<ShortFraction>,
+    pub frequency_squared: Vec<ShortFraction<W>>,
+    pub frequency: Vec<ShortFraction<W>>,
     /// The derivative of the secular sine in the amplitude, where that is determined.
-    pub slope: Option<ShortFraction>,
+    pub slope: Option<ShortFraction<W>>,
+}
+
+impl<W> Default for FirstOrders<W> {
+    fn default() -> Self {
+        Self {
+            count: 0,
+            displacement: ShortSeriesList::default(),
+            frequency_squared: vec![],
+            frequency: vec![],
+            slope: None,
+        }
+    }
 }
 
 /// Order beyond which two words are too short.
 pub(super) const LONG: usize = 28;
 
+/// Order beyond which one word is too short for expansions with symbols, and not tried.
+pub(super) const SHORT: usize = 11;
+
+/// The beginning of an expansion.
+pub(super) enum Beginning {
+    /// All orders of the plan, in one word.
+    OneWord(FirstOrders<i64>),
+    /// All orders of the plan in two words, or the first ones.
+    TwoWords(FirstOrders),
+}
+
 /// The orders up to the highest of the plan, or as many as fit; of a long expansion, and of one that
-/// will not fit, only as many as show how its denominators grow.
-pub(super) fn beginning(plan: &Plan, extent: ExpansionScope, interrupt: Interrupt) -> FirstOrders {
+/// will not fit, only as many as show how its denominators grow. The first ones are formed in one
+/// word.
+pub(super) fn beginning(plan: &Plan, extent: ExpansionScope, interrupt: Interrupt) -> Beginning {
     /// Number of orders that are computed of a long expansion.
     const ENOUGH: usize = 16;
     /// Number of orders that show whether the last one will fit, and how denominators grow.
@@ -46,26 +70,44 @@ pub(super) fn beginning(plan: &Plan, extent: ExpansionScope, interrupt: Interrup
     // Before its order a term leaves no trace in the denominators.
     let furthest = plan.terms.iter().map(|term| term.order).max().unwrap_or(0);
     let few = FEW.max(furthest);
-    let Some(mut recursion) = Recursion::new(plan, extent, |_| 1) else {
-        return FirstOrders::default();
+    let mut narrow = Recursion::<i64>::new(plan, extent, |_| 1);
+    if let Some(recursion) = &mut narrow {
+        while recursion.complete <= last
+            && !interrupt.is_requested()
+            && recursion.next_order().is_some()
+        {}
+    }
+    if let Some(recursion) = narrow.take_if(|recursion| recursion.complete > plan.highest) {
+        return Beginning::OneWord(recursion.orders());
+    }
+    let Some(mut recursion) = Recursion::<i128>::new(plan, extent, |_| 1) else {
+        return Beginning::TwoWords(FirstOrders::default());
     };
+    if let Some(narrow) = narrow {
+        recursion.go_on_from(&narrow);
+    }
+    let mut is_judged = false;
     while recursion.complete <= last && !interrupt.is_requested() {
-        if recursion.next_order().is_none()
-            || (recursion.complete == few + 1 && !recursion.may_fit(last))
-        {
+        if !is_judged && recursion.complete > few {
+            is_judged = true;
+            if !recursion.may_fit(last) {
+                break;
+            }
+        }
+        if recursion.next_order().is_none() {
             break;
         }
     }
-    recursion.orders()
+    Beginning::TwoWords(recursion.orders())
 }
 
 /// The expansion to the highest order of a plan, with the coefficient of each term multiplied by a
 /// factor; `None` if a number does not fit.
-pub(super) fn with_factors(
+pub(super) fn with_factors<W: FixedWidth>(
     plan: &Plan,
     extent: ExpansionScope,
-    factor: impl Fn(usize) -> i128,
-) -> Option<FirstOrders> {
+    factor: impl Fn(usize) -> i64,
+) -> Option<FirstOrders<W>> {
     let mut recursion = Recursion::new(plan, extent, factor)?;
     while recursion.complete <= plan.highest {
         recursion.next_order()?;
@@ -73,52 +115,81 @@ pub(super) fn with_factors(
     Some(recursion.orders())
 }
 
-struct Recursion<'a> {
+struct Recursion<'a, W> {
     plan: &'a Plan<'a>,
     extent: ExpansionScope,
-    terms: Vec<Term<'a>>,
+    terms: Vec<Term<'a, W>>,
     /// The tables of the plan, an entry for each order; the first is the motion.
-    tables: Vec<ShortSeriesList>,
-    detuned: ShortSeriesList,
-    derived: ShortSeriesList,
+    tables: Vec<ShortSeriesList<W>>,
+    detuned: ShortSeriesList<W>,
+    derived: ShortSeriesList<W>,
     /// The derivative of all terms with one velocity at each order; empty if there are none.
-    damped: ShortSeriesList,
+    damped: ShortSeriesList<W>,
     /// Memory of the operations, and of the right side of an order.
-    buffer: SeriesBuffer,
-    right_side: SeriesBuffer,
-    frequency_squared: Vec<ShortFraction>,
-    frequency: Vec<ShortFraction>,
+    buffer: SeriesBuffer<W>,
+    right_side: SeriesBuffer<W>,
+    frequency_squared: Vec<ShortFraction<W>>,
+    frequency: Vec<ShortFraction<W>>,
     /// A sine in addition to the terms.
-    sine: Option<Sine>,
-    variation: Option<Variation>,
+    sine: Option<Sine<W>>,
+    variation: Option<Variation<W>>,
     /// Number of orders whose amplitudes are known, too.
     complete: usize,
 }
 
-/// Derivatives of all quantities by the amplitude of `y_0`, for limit cycles.
-struct Variation {
-    /// The only order of each table.
-    tables: ShortSeriesList,
-    /// The right side, and the derivative of the terms with one velocity.
-    right_side: SeriesBuffer,
-    damped: SeriesBuffer,
-    slope: ShortFraction,
+impl Recursion<'_, i128> {
+    /// Takes the orders that are complete in one word.
+    fn go_on_from(&mut self, narrow: &Recursion<'_, i64>) {
+        let count = narrow.complete;
+        if count == 0 {
+            return;
+        }
+        for (own, narrow) in self.tables.iter_mut().zip(&narrow.tables) {
+            own.set_beginning(narrow, count);
+        }
+        self.detuned.set_beginning(&narrow.detuned, count);
+        self.derived.set_beginning(&narrow.derived, count);
+        // The first order begins this list.
+        self.damped.set_beginning(&narrow.damped, if count > 1 { count } else { 0 });
+        let widened = |all: &[ShortFraction<i64>]| {
+            all.iter().take(count).map(|own| own.widened()).collect::<Vec<_>>()
+        };
+        self.frequency_squared = widened(&narrow.frequency_squared);
+        self.frequency = widened(&narrow.frequency);
+        if let (Some(own), Some(narrow)) = (&mut self.sine, &narrow.sine) {
+            own.scaled.set_beginning(&narrow.scaled, count);
+            own.sine.set_beginning(&narrow.sine, count);
+            // The cosine is known to the next order.
+            own.cosine.set_beginning(&narrow.cosine, count + 1);
+        }
+        self.complete = count;
+    }
 }
 
-impl<'a> Recursion<'a> {
+/// Derivatives of all quantities by the amplitude of `y_0`, for limit cycles.
+struct Variation<W> {
+    /// The only order of each table.
+    tables: ShortSeriesList<W>,
+    /// The right side, and the derivative of the terms with one velocity.
+    right_side: SeriesBuffer<W>,
+    damped: SeriesBuffer<W>,
+    slope: ShortFraction<W>,
+}
+
+impl<'a, W: FixedWidth> Recursion<'a, W> {
     /// A recursion in which the coefficient of each term is multiplied by a factor.
     fn new(
         plan: &'a Plan<'a>,
         extent: ExpansionScope,
-        factor: impl Fn(usize) -> i128,
+        factor: impl Fn(usize) -> i64,
     ) -> Option<Self> {
+        let number = |own: &Integer| own.to_i128().and_then(cast::<i128, W>);
         let coefficient = |place: usize, term: &PlannedTerm, derivative: bool| {
-            let power = if derivative { i128::from(term.position) + 1 } else { 1 };
-            let denominator = term.coefficient.denom().to_i128()?.checked_mul(power)?;
-            let numerator = term.coefficient.numer().to_i128()?.checked_mul(factor(place))?;
+            let power = if derivative { i64::from(term.position) + 1 } else { 1 };
+            let denominator = number(term.coefficient.denom())?.product(cast(power)?)?;
+            let numerator = number(term.coefficient.numer())?.product(cast(factor(place))?)?;
             // So that it has a negative.
-            numerator.checked_neg()?;
-            Some((numerator, denominator))
+            (numerator > W::min_value()).then_some((numerator, denominator))
         };
         let terms = plan.terms.iter().zip(&plan.of_terms).enumerate();
         let last = plan.last.min(LONG + 1);
@@ -128,7 +199,7 @@ impl<'a> Recursion<'a> {
         let buffer = || SeriesBuffer::with_capacity(2 * plan.most_harmonics());
         let numbers = || {
             let mut numbers = Vec::with_capacity(last + 1);
-            numbers.push(ShortFraction::ONE);
+            numbers.push(ShortFraction::one());
             numbers
         };
         let mut recursion = Self {
@@ -140,9 +211,7 @@ impl<'a> Recursion<'a> {
                 })
                 .collect(),
             sine: match &plan.sine {
-                Some((_, rate)) => {
-                    Some(Sine::new((rate.numer().to_i128()?, rate.denom().to_i128()?)))
-                }
+                Some((_, rate)) => Some(Sine::new((number(rate.numer())?, number(rate.denom())?))),
                 None => None,
             },
             tables: (0..plan.tables).map(|_| list()).collect(),
@@ -156,8 +225,10 @@ impl<'a> Recursion<'a> {
             variation: None,
             complete: 0,
         };
-        let start: &[i128] = if plan.half_wave { &[1] } else { &[0, 1] };
-        recursion.right_side.set(ShortSeries::new(Wave::Cosine, recursion.harmonics(), 1, start)?);
+        let start = [W::zero(), W::one()];
+        let start = &start[usize::from(plan.half_wave)..];
+        let motion = ShortSeries::new(Wave::Cosine, recursion.harmonics(), W::one(), start)?;
+        recursion.right_side.set(motion);
         recursion.push_displacement(0)?;
         match plan.scheme.amplitude {
             AmplitudeKind::Free => recursion.complete = 1,
@@ -171,8 +242,8 @@ impl<'a> Recursion<'a> {
         /// Number of binary digits that fit.
         const DIGITS: usize = 126;
         let digits = |order: usize| {
-            let denominator = self.tables[0].get(order).map_or(1, ShortSeries::denominator);
-            denominator.ilog2() as usize
+            let denominator = self.tables[0].get(order).map_or(W::one(), ShortSeries::denominator);
+            (W::zero().leading_zeros() - denominator.leading_zeros()).saturating_sub(1) as usize
         };
         let (last, middle) = (self.complete - 1, (self.complete - 1) / 2);
         let (grown, orders) = (digits(last).saturating_sub(digits(middle)), last - middle);
@@ -187,7 +258,7 @@ impl<'a> Recursion<'a> {
     }
 
     /// Returns the orders that are complete.
-    fn orders(mut self) -> FirstOrders {
+    fn orders(mut self) -> FirstOrders<W> {
         FirstOrders {
             count: self.complete,
             displacement: self.tables.swap_remove(0),
@@ -216,7 +287,7 @@ impl<'a> Recursion<'a> {
         let resonance = right_side.coefficient(plan.resonant())?;
         let square = match right_side.wave() {
             Wave::Sine if !resonance.is_zero() => return None,
-            Wave::Sine => ShortFraction::ZERO,
+            Wave::Sine => ShortFraction::zero(),
             Wave::Cosine => resonance.negative(),
         };
         let frequency = self.frequency(order, square)?;
@@ -243,7 +314,7 @@ impl<'a> Recursion<'a> {
     }
 
     /// `omega_n` from `W_n`.
-    fn frequency(&self, order: usize, square: ShortFraction) -> Option<ShortFraction> {
+    fn frequency(&self, order: usize, square: ShortFraction<W>) -> Option<ShortFraction<W>> {
         let mut frequency = square.half()?;
         // The sum over all pairs is twice that over one of each pair, plus the middle term.
         for i in (1..=order / 2).filter(|i| !self.frequency[*i].is_zero()) {
@@ -260,32 +331,36 @@ impl<'a> Recursion<'a> {
             sine.prepare(order, &mut self.buffer)?;
         }
         let zero = ShortSeries::zero(self.plan.wave(order), self.harmonics());
-        let Self { plan, terms, tables, frequency, frequency_squared, .. } = self;
+        let Self { plan, terms, tables, damped, buffer, right_side, .. } = self;
+        let (plan, frequency, frequency_squared) =
+            (*plan, &*self.frequency, &*self.frequency_squared);
         let at =
             |term: &PlannedTerm, table: usize| tables[table].get(order.checked_sub(term.order)?);
         if plan.of_terms.iter().any(|(_, derivative)| *derivative) {
             if order == 1 {
-                self.damped.push(zero);
+                damped.push(zero);
             }
-            let damped = parts(plan, terms, true, at)?;
-            match derivative_of_parts(damped, &mut self.buffer)? {
-                true => self.damped.push(self.buffer.series()),
-                false => self.damped.push(zero),
+            match derivative_of_parts(parts(plan, terms, true, at)?, buffer)? {
+                true => damped.push(buffer.series()),
+                false => damped.push(zero),
             }
         }
         // Room for the contributions of the frequency of all orders, too.
         let mut all = Vec::with_capacity(2 * order + terms.len() + 1);
-        let mut subtract =
-            |numerator: i128, denominator, series| all.push((-numerator, denominator, series));
+        let mut subtract = |numerator: W, denominator: W, series| {
+            if !numerator.is_zero() && !ShortSeries::is_zero(series) {
+                all.push((-numerator, denominator, series));
+            }
+        };
         for (numerator, denominator, series) in parts(plan, terms, false, at)? {
             subtract(numerator, denominator, series);
         }
         if let Some(rest) = self.sine.as_ref().and_then(Sine::rest) {
-            subtract(1, 1, rest);
+            subtract(W::one(), W::one(), rest);
         }
         for i in 1..=order {
             let present = plan.scheme.detuning == Detuning::Acceleration || i == order;
-            if let Some(damped) = self.damped.get(i).filter(|_| present) {
+            if let Some(damped) = damped.get(i).filter(|_| present) {
                 let factor = frequency[order - i];
                 subtract(factor.numerator(), factor.denominator(), damped);
             }
@@ -294,10 +369,9 @@ impl<'a> Recursion<'a> {
                 subtract(factor.numerator(), factor.denominator(), detuned);
             }
         }
-        all.retain(|(numerator, _, series)| *numerator != 0 && !series.is_zero());
         match all.is_empty() {
-            true => self.right_side.set(zero),
-            false => self.right_side.set_combination(&all)?,
+            true => right_side.set(zero),
+            false => right_side.set_combination(&all)?,
         }
         Some(())
     }
@@ -349,15 +423,16 @@ impl<'a> Recursion<'a> {
         let particular = self.right_side.series();
         let mut numerators = particular.numerators().iter();
         let at_zero = match (particular.wave(), plan.scheme.amplitude) {
-            (Wave::Sine, _) => numerators.enumerate().try_fold(0_i128, |sum, (index, own)| {
-                sum.checked_add(own.checked_mul(plan.harmonic(index) as i128)?)
+            (Wave::Sine, _) => numerators.enumerate().try_fold(W::zero(), |sum, (index, own)| {
+                sum.checked_add(&own.product(cast(plan.harmonic(index))?)?)
             }),
             (Wave::Cosine, AmplitudeKind::Free) => {
-                numerators.try_fold(0_i128, |sum, own| sum.checked_add(*own))
+                numerators.try_fold(W::zero(), |sum, own| sum.checked_add(own))
             }
             (Wave::Cosine, AmplitudeKind::Determined) => return Some(()),
         };
-        self.right_side.set_numerator(plan.resonant(), at_zero?.checked_neg()?)
+        let at_zero = at_zero.filter(|sum| *sum > W::min_value())?;
+        self.right_side.set_numerator(plan.resonant(), -at_zero)
     }
 
     /// Takes the motion of an order, which stands in place of the right side.
@@ -403,7 +478,7 @@ impl<'a> Recursion<'a> {
 
     /// The first variation at order zero; `None` if the secular sine does not depend on the
     /// amplitude.
-    fn variation(&self) -> Option<Variation> {
+    fn variation(&self) -> Option<Variation<W>> {
         let plan = self.plan;
         // The first tables, of y and of omega y', are their own variations.
         let leaves = 1 + usize::from(plan.has_velocity);
@@ -411,19 +486,19 @@ impl<'a> Recursion<'a> {
         for table in &self.tables[..leaves] {
             tables.push(table.get(0)?);
         }
-        let [mut left, mut right, mut sum]: [SeriesBuffer; 3] = Default::default();
+        let [mut left, mut right, mut sum]: [SeriesBuffer<W>; 3] = Default::default();
         for product in &plan.products {
-            let varied = |varied: usize, other: usize, buffer: &mut SeriesBuffer| {
+            let varied = |varied: usize, other: usize, buffer: &mut SeriesBuffer<W>| {
                 buffer.set_product(tables.get(varied)?, self.tables[other].get(0)?)
             };
             varied(product.left, product.right, &mut left)?;
             varied(product.right, product.left, &mut right)?;
-            let both = [(1, 1, left.series()), (1, 1, right.series())];
-            sum.set_combination(&both)?;
+            let both = [left.series(), right.series()];
+            sum.set_combination(&both.map(|own| (W::one(), W::one(), own)))?;
             sum.reduce();
             tables.push(sum.series());
         }
-        let [mut plain, mut damped, mut right_side]: [SeriesBuffer; 3] = Default::default();
+        let [mut plain, mut damped, mut right_side]: [SeriesBuffer<W>; 3] = Default::default();
         let (is_plain, is_damped) = {
             let at =
                 |term: &PlannedTerm, table: usize| tables.get(table).filter(|_| term.order == 1);
@@ -436,7 +511,8 @@ impl<'a> Recursion<'a> {
             (is_plain, derivative_of_parts(parts_with(true)?, &mut damped)?)
         };
         let parts = [(is_plain, plain.series()), (is_damped, damped.series())].into_iter();
-        let parts = parts.filter(|(is_any, _)| *is_any).map(|(_, series)| (-1, 1, series));
+        let parts =
+            parts.filter(|(is_any, _)| *is_any).map(|(_, series)| (-W::one(), W::one(), series));
         right_side.set_combination(&parts.collect::<Vec<_>>())?;
         right_side.reduce();
         let slope = right_side.series().coefficient(plan.resonant())?;
@@ -448,29 +524,29 @@ impl<'a> Recursion<'a> {
 }
 
 /// Sets `series + change by`, in lowest terms.
-fn set_changed(
-    buffer: &mut SeriesBuffer,
-    series: ShortSeries,
-    (numerator, denominator): (i128, i128),
-    by: ShortSeries,
+fn set_changed<W: FixedWidth>(
+    buffer: &mut SeriesBuffer<W>,
+    series: ShortSeries<W>,
+    (numerator, denominator): (W, W),
+    by: ShortSeries<W>,
 ) -> Option<()> {
-    buffer.set_combination(&[(1, 1, series), (numerator, denominator, by)])?;
+    buffer.set_combination(&[(W::one(), W::one(), series), (numerator, denominator, by)])?;
     buffer.reduce();
     Some(())
 }
 
 /// A term of the force with its coefficient, divided by the power of which the term is a derivative;
 /// `None` for one that overflows.
-type Term<'a> = (&'a PlannedTerm, Option<(i128, i128)>);
+type Term<'a, W> = (&'a PlannedTerm, Option<(W, W)>);
 
 /// The terms with a derivative or those without, each with the series that `at` selects from its
 /// table; `None` if a coefficient of one is too long.
-fn parts<'b>(
+fn parts<'b, W: FixedWidth>(
     plan: &'b Plan,
-    terms: &'b [Term],
+    terms: &'b [Term<W>],
     derivative: bool,
-    at: impl Fn(&PlannedTerm, usize) -> Option<ShortSeries<'b>> + Copy,
-) -> Option<impl Iterator<Item = (i128, i128, ShortSeries<'b>)> + Clone> {
+    at: impl Fn(&PlannedTerm, usize) -> Option<ShortSeries<'b, W>> + Copy,
+) -> Option<impl Iterator<Item = (W, W, ShortSeries<'b, W>)> + Clone> {
     let own = terms.iter().zip(&plan.of_terms).filter(move |(_, (_, own))| *own == derivative);
     let parts = own.filter_map(move |((term, coefficient), (table, _))| {
         at(term, *table).map(|series| (*coefficient, series))
@@ -484,21 +560,21 @@ fn parts<'b>(
 }
 
 /// Sets `y_n''` or `-y_n`: what the corrections of the frequency multiply.
-fn set_frequency_factor(
+fn set_frequency_factor<W: FixedWidth>(
     plan: &Plan,
-    displacement: ShortSeries,
-    buffer: &mut SeriesBuffer,
+    displacement: ShortSeries<W>,
+    buffer: &mut SeriesBuffer<W>,
 ) -> Option<()> {
     match plan.scheme.detuning {
         Detuning::Acceleration => buffer.set_second_derivative(displacement),
-        Detuning::Displacement => buffer.set_combination(&[(-1, 1, displacement)]),
+        Detuning::Displacement => buffer.set_combination(&[(-W::one(), W::one(), displacement)]),
     }
 }
 
 /// Sets the derivative of the sum of the parts; returns whether there are any.
-fn derivative_of_parts<'a>(
-    parts: impl Iterator<Item = (i128, i128, ShortSeries<'a>)> + Clone,
-    buffer: &mut SeriesBuffer,
+fn derivative_of_parts<'a, W: FixedWidth + 'a>(
+    parts: impl Iterator<Item = (W, W, ShortSeries<'a, W>)> + Clone,
+    buffer: &mut SeriesBuffer<W>,
 ) -> Option<bool> {
     if parts.clone().next().is_none() {
         return Some(false);
@@ -510,32 +586,31 @@ fn derivative_of_parts<'a>(
 }
 
 /// The [sine](super::sine) of the motion, order by order.
-struct Sine {
-    rate: (i128, i128),
+struct Sine<W> {
+    rate: (W, W),
     /// `V`, `S` and `C`.
-    scaled: ShortSeriesList,
-    sine: ShortSeriesList,
-    cosine: ShortSeriesList,
+    scaled: ShortSeriesList<W>,
+    sine: ShortSeriesList<W>,
+    cosine: ShortSeriesList<W>,
     /// `S` of the next order without the contribution of its own motion, from order one on.
-    rest: ShortSeriesList,
+    rest: ShortSeriesList<W>,
 }
 
-impl Sine {
-    fn new(rate: (i128, i128)) -> Self {
+impl<W: FixedWidth> Sine<W> {
+    fn new(rate: (W, W)) -> Self {
         let list = ShortSeriesList::default;
         Self { rate, scaled: list(), sine: list(), cosine: list(), rest: list() }
     }
 
     /// `S_n - y_n` of the order that has been prepared.
-    fn rest(&self) -> Option<ShortSeries<'_>> {
+    fn rest(&self) -> Option<ShortSeries<'_, W>> {
         self.rest.get(0)
     }
 
     /// Forms `S_n - y_n`, for the order after those that are known.
-    fn prepare(&mut self, order: usize, buffer: &mut SeriesBuffer) -> Option<()> {
+    fn prepare(&mut self, order: usize, buffer: &mut SeriesBuffer<W>) -> Option<()> {
         buffer.set_convolution(&self.cosine, &self.scaled, 1, order)?;
-        let twice_and_half = 2 * i128::try_from(order).ok()? + 1;
-        buffer.multiply(2, twice_and_half)?;
+        buffer.multiply(cast(2)?, cast(2 * order + 1)?)?;
         self.rest.replace_last(buffer.series());
         Some(())
     }
@@ -544,17 +619,16 @@ impl Sine {
     fn push(
         &mut self,
         order: usize,
-        displacement: ShortSeries,
-        buffer: &mut SeriesBuffer,
+        displacement: ShortSeries<W>,
+        buffer: &mut SeriesBuffer<W>,
     ) -> Option<()> {
-        let number = i128::try_from(order).ok()?;
         buffer.set(displacement);
-        buffer.multiply(2 * number + 1, 2)?;
+        buffer.multiply(cast(2 * order + 1)?, cast(2)?)?;
         self.scaled.push(buffer.series());
         match self.rest.get(0) {
             Some(rest) => {
-                let both = [(1, 1, rest), (1, 1, displacement)];
-                buffer.set_combination(&both)?;
+                let both = [rest, displacement];
+                buffer.set_combination(&both.map(|own| (W::one(), W::one(), own)))?;
                 buffer.reduce();
                 self.sine.push(buffer.series());
             }
@@ -562,11 +636,12 @@ impl Sine {
                 // At order zero the sine is the motion, and the cosine is one.
                 self.sine.push(displacement);
                 let harmonics = displacement.harmonics().times(displacement.harmonics());
-                self.cosine.push(ShortSeries::new(Wave::Cosine, harmonics, 1, &[1])?);
+                let one = [W::one()];
+                self.cosine.push(ShortSeries::new(Wave::Cosine, harmonics, W::one(), &one)?);
             }
         }
         buffer.set_convolution(&self.sine, &self.scaled, 0, order)?;
-        buffer.multiply(self.rate.0, self.rate.1.checked_mul(number + 1)?)?;
+        buffer.multiply(self.rate.0, self.rate.1.product(cast(order + 1)?)?)?;
         self.cosine.push(buffer.series());
         Some(())
     }

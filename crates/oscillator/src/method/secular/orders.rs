@@ -8,7 +8,7 @@ use super::reconstruct::ExpansionScope;
 use super::{AmplitudeKind, SecularExpansion, SecularSine};
 use crate::exact::{Integer, Integers, Rational};
 use crate::series::FourierSeries;
-use crate::series::fixed_width::{ShortFraction, ShortSeries};
+use crate::series::fixed_width::{FixedWidth, ShortFraction, ShortSeries};
 use crate::series::waves::Wave;
 
 /// One order of the result.
@@ -40,32 +40,47 @@ impl ExpansionOrder {
 
 /// All orders of an expansion in numbers of fixed width; `slope` is that of the secular sine in the
 /// amplitude.
-pub(super) fn short_expansion(
+pub(super) fn short_expansion<W: FixedWidth>(
     plan: &Plan,
-    orders: &fixed_width::FirstOrders,
+    orders: &fixed_width::FirstOrders<W>,
     slope: Option<&Rational>,
     extent: ExpansionScope,
 ) -> SecularExpansion<Integers> {
-    let constant = |own: &ShortFraction| match own.is_zero() {
+    let constant = |own: ShortFraction<W>| match own.is_zero() {
         true => FourierSeries::zero(Integers),
         false => {
             let numerator = vec![own.numerator().into()];
             FourierSeries::in_lowest_terms(Integers, own.denominator().into(), numerator, vec![])
         }
     };
-    let constants = |all: &[ShortFraction]| all.iter().take(orders.count).map(constant).collect();
+    let constants = |all: &[ShortFraction<W>]| {
+        let mut constants = Vec::with_capacity(orders.count);
+        constants.extend(all.iter().take(orders.count).copied().map(constant));
+        constants
+    };
     let motions =
         (0..orders.count).filter_map(|order| Some((order, orders.displacement.get(order)?)));
-    let first_harmonic = |motion: ShortSeries| match motion.wave() {
-        Wave::Cosine => motion.coefficient(plan.resonant()).map_or_else(Rational::zero, rational),
-        Wave::Sine => Rational::zero(),
+    let first_harmonic = |motion: ShortSeries<W>| match motion.wave() {
+        Wave::Cosine => motion.coefficient(plan.resonant()).unwrap_or_else(ShortFraction::zero),
+        Wave::Sine => ShortFraction::zero(),
     };
     let condition = |slope: &Rational| {
+        let condition = |first_harmonic: ShortFraction<W>| match orders
+            .slope
+            .and_then(|slope| first_harmonic.product(slope))
+        {
+            Some(product) => SecularSine {
+                sine: constant(product.negative()),
+                slope: self::constant(slope.clone()),
+                amplitude: constant(first_harmonic),
+            },
+            None => secular_sine(rational(first_harmonic), slope),
+        };
         let motions = motions.clone().skip(1);
-        motions.map(|(_, motion)| secular_sine(first_harmonic(motion), slope)).collect()
+        motions.map(|(_, motion)| condition(first_harmonic(motion))).collect()
     };
-    let displacement = |(order, motion): (usize, ShortSeries)| {
-        let numerators = motion.numerators().iter().copied().map(Integer::from);
+    let displacement = |(order, motion): (usize, ShortSeries<W>)| {
+        let numerators = motion.numerators().iter().map(|own| (*own).into());
         motion_of_order(plan, order, motion.denominator().into(), numerators)
     };
     SecularExpansion {
@@ -73,13 +88,18 @@ pub(super) fn short_expansion(
         frequency: constants(&orders.frequency),
         amplitudes: slope.map(condition).unwrap_or_default(),
         displacement: match extent {
-            ExpansionScope::Motion => motions.map(displacement).collect(),
+            ExpansionScope::Motion => {
+                let mut all = Vec::with_capacity(orders.count);
+                all.extend(motions.map(displacement));
+                all
+            }
             ExpansionScope::Frequency => vec![],
         },
     }
 }
 
-fn rational(own: ShortFraction) -> Rational {
+/// A fraction of fixed width as one of any length.
+pub(super) fn rational<W: FixedWidth>(own: ShortFraction<W>) -> Rational {
     Rational::new_raw(own.numerator().into(), own.denominator().into())
 }
 
@@ -112,9 +132,9 @@ pub(super) fn motion_of_order(
 ) -> FourierSeries<Integers> {
     let numerators = numerators.into_iter();
     let mut coefficients = Vec::with_capacity(plan.harmonic(numerators.len()));
-    for (index, numerator) in numerators.enumerate() {
-        coefficients.resize(plan.harmonic(index), Integer::zero());
-        coefficients.push(numerator);
+    match plan.half_wave {
+        true => numerators.for_each(|own| coefficients.extend([Integer::zero(), own])),
+        false => coefficients.extend(numerators),
     }
     let (cosine, sine) = match plan.wave(order) {
         Wave::Cosine => (coefficients, vec![]),

@@ -99,11 +99,14 @@ impl<'a> Plan<'a> {
             of_terms: vec![],
             has_velocity: terms.iter().any(|term| term.velocity > 1),
             frequency_alone,
-            starts: vec![0],
+            starts: Vec::with_capacity(last + 2),
             sine: None,
         };
+        let mut end = 0;
+        plan.starts.push(end);
         for order in 0..=last {
-            plan.starts.push(plan.starts[order] + plan.harmonics(order));
+            end += plan.harmonics(order);
+            plan.starts.push(end);
         }
         plan.grid = Grid::new(plan.points(), half_wave);
         plan.tables += usize::from(plan.has_velocity);

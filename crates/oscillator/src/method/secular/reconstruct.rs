@@ -19,8 +19,9 @@ use num_integer::Integer as _;
 use num_traits::{One, Zero};
 
 use super::denominators::{Factored, Growth};
+use super::fixed_width::Beginning;
 use super::modular::{PrimeImage, Recursion};
-use super::orders::{ExpansionOrder, expansion, motion_of_order, short_expansion};
+use super::orders::{ExpansionOrder, expansion, motion_of_order, rational, short_expansion};
 use super::plan::{Plan, PlannedTerm};
 use super::{AmplitudeKind, ForceTerm, Scheme, SecularExpansion, fixed_width};
 use crate::exact::residue::remainder::{ReconstructedIntegers, Remainders, fraction};
@@ -57,12 +58,18 @@ pub fn expand(
     const LONG: usize = 8;
     let equation = SecularEquation::new(force, highest, *scheme, extent);
     let plan = equation.plan(highest)?;
-    let beginning = fixed_width::beginning(&plan, extent, supervision.interrupt);
-    let slope = match (scheme.amplitude, extent) {
-        (AmplitudeKind::Free, _) | (_, ExpansionScope::Frequency) => None,
-        (AmplitudeKind::Determined, ExpansionScope::Motion) => {
-            Some(slope(force, scheme, &beginning)?)
+    let has_slope =
+        scheme.amplitude == AmplitudeKind::Determined && extent == ExpansionScope::Motion;
+    let beginning = match fixed_width::beginning(&plan, extent, supervision.interrupt) {
+        Beginning::OneWord(orders) => {
+            let slope = orders.slope.filter(|_| has_slope).map(rational);
+            return Some(short_expansion(&plan, &orders, slope.as_ref(), extent));
         }
+        Beginning::TwoWords(orders) => orders,
+    };
+    let slope = match has_slope {
+        false => None,
+        true => Some(slope(force, scheme, &beginning)?),
     };
     if beginning.count > highest {
         return Some(short_expansion(&plan, &beginning, slope.as_ref(), extent));
@@ -83,8 +90,8 @@ fn slope(
     scheme: &Scheme,
     beginning: &fixed_width::FirstOrders,
 ) -> Option<Rational> {
-    if let Some(slope) = &beginning.slope {
-        return Some(Rational::new_raw(slope.numerator().into(), slope.denominator().into()));
+    if let Some(slope) = beginning.slope {
+        return Some(rational(slope));
     }
     let first = super::expand(&Integers, force, 1, scheme).ok()?;
     let (numerator, denominator) = first.amplitudes.first()?.slope.mean();
@@ -883,14 +890,15 @@ mod tests {
         agrees(&[term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1)), term(2, 3, 0, (1, 3))], 12, cycle);
     }
 
-    /// An expansion in two words is the beginning of one by primes, whichever order is the last
-    /// that fits.
+    /// An expansion in one word is the beginning of one in two, and that of one by primes, whichever
+    /// order is the last that fits.
     #[test]
-    fn the_end_of_two_words_leaves_no_trace() {
+    fn the_end_of_a_width_leaves_no_trace() {
         let cases = [
+            (vec![term(1, 3, 0, (1, 1))], AmplitudeKind::Free, 9..13),
             (vec![term(1, 3, 0, (1, 1))], AmplitudeKind::Free, 20..30),
-            (vec![term(1, 2, 0, (2, 3))], AmplitudeKind::Free, 8..16),
-            (vec![term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1))], AmplitudeKind::Determined, 8..14),
+            (vec![term(1, 2, 0, (2, 3))], AmplitudeKind::Free, 3..16),
+            (vec![term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1))], AmplitudeKind::Determined, 3..14),
         ];
         for (force, amplitude, orders) in cases {
             let normalisation = AmplitudeConvention::Initial;
@@ -903,6 +911,10 @@ mod tests {
                 let found = expand(highest, ExpansionScope::Motion);
                 let alone = expand(highest, ExpansionScope::Frequency);
                 assert_eq!(found.displacement, long.displacement[..=highest], "{highest}");
+                for (own, long) in found.amplitudes.iter().zip(&long.amplitudes) {
+                    assert_eq!(own.amplitude, long.amplitude, "{highest}");
+                    assert_eq!((&own.sine, &own.slope), (&long.sine, &long.slope), "{highest}");
+                }
                 for own in [&found, &alone] {
                     assert_eq!(own.frequency_squared, long.frequency_squared[..=highest]);
                     assert_eq!(own.frequency, long.frequency[..=highest], "{highest}");

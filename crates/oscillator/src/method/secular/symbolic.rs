@@ -21,7 +21,7 @@
 //!
 //! Memory: the residues of all coefficients, 8 bytes for each prime, at most half a gigabyte.
 
-use num_traits::{One, Zero};
+use num_traits::{One, Zero, cast};
 
 use super::fixed_width;
 use super::lower_set::{LowerSet, PointField};
@@ -36,7 +36,7 @@ use crate::exact::{Integer, Integers, Monomial, Polynomial, Polynomials, Rationa
 use crate::interrupt::Supervision;
 use crate::parallel::{par_map, threads};
 use crate::series::FourierSeries;
-use crate::series::fixed_width::ShortFraction;
+use crate::series::fixed_width::{FixedWidth, ShortFraction};
 use crate::series::waves::Wave;
 
 type Symbols = Polynomials<Integers>;
@@ -45,6 +45,9 @@ type Symbols = Polynomials<Integers>;
 /// single run modulo a prime has room for. They are three to four times as fast with one symbol, half
 /// as fast again with three to the second order, and as fast with two to the sixth.
 const FEW: usize = WIDTH;
+
+/// The same for one word.
+const MORE: usize = 2 * WIDTH;
 
 /// Number of points times orders up to which one thread is faster than starting several.
 const ALONE: usize = 200;
@@ -96,8 +99,13 @@ impl Work for ExpandSymbols<'_> {
                 None => lower_set(stage)?,
             };
             let plan = Plan::new(&terms, None, stage, scheme, extent == ExpansionScope::Frequency)?;
-            let by_words = match lower_set.points.len() <= FEW && stage <= fixed_width::LONG {
-                true => short_orders(&plan, &groups, &lower_set, extent),
+            let points = lower_set.points.len();
+            let by_one_word = || match points <= MORE && stage <= fixed_width::SHORT {
+                true => short_orders::<i64>(&plan, &groups, &lower_set, extent),
+                false => None,
+            };
+            let by_two_words = || match points <= FEW && stage <= fixed_width::LONG {
+                true => short_orders::<i128>(&plan, &groups, &lower_set, extent),
                 false => None,
             };
             let by_primes = || {
@@ -113,7 +121,7 @@ impl Work for ExpandSymbols<'_> {
                 };
                 search.orders()
             };
-            let orders = by_words.or_else(by_primes)?;
+            let orders = by_one_word().or_else(by_two_words).or_else(by_primes)?;
             if best.as_ref().is_none_or(|best| best.frequency.len() < orders.len()) {
                 let monomials = lower_set.monomials(&groups.kinds, base);
                 best = Some(expansion(&plan, &orders, &monomials, extent));
@@ -185,21 +193,25 @@ fn numbers(plan: &Plan, extent: ExpansionScope, order: usize) -> usize {
     }
 }
 
-/// The numbers of all orders from their values at the points in two words each; `None` if one does
-/// not fit.
-fn short_orders(
+/// The numbers of all orders from their values at the points in one word or two each; `None` if one
+/// does not fit.
+fn short_orders<W: FixedWidth>(
     plan: &Plan,
     groups: &Groups,
     lower_set: &LowerSet,
     extent: ExpansionScope,
 ) -> Option<Vec<SymbolicOrder>> {
-    let mut at_orders: Vec<Vec<ShortFraction>> = vec![vec![]; plan.highest + 1];
-    for (place, point) in lower_set.points.iter().enumerate() {
+    let mut at_orders: Vec<Vec<ShortFraction<W>>> = vec![vec![]; plan.highest + 1];
+    // The last points have the longest numbers: what does not fit is seen at once.
+    let at_point = |point: &Vec<usize>| {
         let factor = |term: usize| match groups.of_terms[term] {
             group if lower_set.lines[group].is_empty() => 1,
-            group => point[group] as i128,
+            group => point[group] as i64,
         };
-        let expansion = fixed_width::with_factors(plan, extent, factor)?;
+        fixed_width::with_factors::<W>(plan, extent, factor)
+    };
+    let expansions: Option<Vec<_>> = lower_set.points.iter().rev().map(at_point).collect();
+    for (place, expansion) in expansions?.into_iter().rev().enumerate() {
         // The points of an order come after those of all lower orders.
         let first = lower_set.counts.partition_point(|count| *count <= place);
         for (order, values) in at_orders.iter_mut().enumerate().skip(first) {
@@ -210,19 +222,20 @@ fn short_orders(
             }
         }
     }
-    let nodes = (0..=plan.highest as i128 + 1).map(|node| ShortFraction::new(node, 1));
-    let inverses = (0..=plan.highest as i128 + 1).map(|node| ShortFraction::new(1, node.max(1)));
+    let numbers_to_last = || (0..=plan.highest + 1).map(cast::<usize, W>);
+    let nodes = numbers_to_last().map(|node| ShortFraction::new(node?, W::one()));
+    let inverses = numbers_to_last().map(|node| ShortFraction::new(W::one(), node?.max(W::one())));
     let field = PointField {
         nodes: nodes.collect::<Option<_>>()?,
         inverses: inverses.collect::<Option<_>>()?,
-        difference: |left: ShortFraction, right: ShortFraction| left.sum(right.negative()),
+        difference: |left: ShortFraction<W>, right: ShortFraction<W>| left.sum(right.negative()),
         product: ShortFraction::product,
     };
-    let interpolated = |(order, mut values): (usize, Vec<ShortFraction>)| {
+    let interpolated = |(order, mut values): (usize, Vec<ShortFraction<W>>)| {
         let numbers = numbers(plan, extent, order);
         lower_set.interpolate(&field, order, &mut values, numbers)?;
         let (denominator, numerators) = ShortFraction::over_common_denominator(&values)?;
-        let numerators = numerators.into_iter().map(Integer::from).collect();
+        let numerators = numerators.into_iter().map(Into::into).collect();
         Some(SymbolicOrder { denominator: denominator.into(), numerators, numbers })
     };
     at_orders.into_iter().enumerate().map(interpolated).collect()
@@ -675,9 +688,12 @@ mod tests {
                         images: vec![],
                     };
                     let by_primes = search.orders().expect("all orders");
-                    let by_words =
-                        short_orders(&plan, &groups, &lower_set, extent).expect("short numbers");
+                    let by_words = short_orders::<i128>(&plan, &groups, &lower_set, extent)
+                        .expect("short numbers");
                     assert_eq!(by_words, by_primes, "{force:?} to order {highest}, {extent:?}");
+                    let by_one_word = short_orders::<i64>(&plan, &groups, &lower_set, extent);
+                    assert!(by_one_word.is_some() || highest > 3, "{force:?} to order {highest}");
+                    assert!(by_one_word.is_none_or(|own| own == by_primes), "{force:?}");
                 }
             }
         }

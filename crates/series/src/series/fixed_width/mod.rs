@@ -1,22 +1,25 @@
-//! Short Fourier series: numerators of two machine words over one denominator, without symbols and
-//! without heap memory for each series.
+//! Short Fourier series: numerators of [one machine word or two](FixedWidth) over one denominator,
+//! without symbols and without heap memory for each series.
 //!
 //! The size of a result is bounded beforehand from the largest numerators of the arguments. If the
-//! bound exceeds two words, the operation returns `None`: no result is ever wrong, and no addition
+//! bound exceeds that width, the operation returns `None`: no result is ever wrong, and no addition
 //! or multiplication has to check for overflow.
 //!
 //! Every operation writes its result into a [`SeriesBuffer`], and what is kept goes to the end of a
 //! [`ShortSeriesList`]: an expansion allocates its lists once.
 
 mod fraction;
+mod list;
 
-pub use fraction::ShortFraction;
+pub use fraction::{FixedWidth, ShortFraction};
+pub use list::ShortSeriesList;
+
+use std::ops::Range;
+
+use num_traits::cast;
 
 use super::waves::Wave;
-use fraction::{
-    BOUND, exact_quotient, greatest_common_divisor, least_common_multiple, power_of_two_above,
-    product, quotient, size,
-};
+use fraction::{exact_quotient, greatest_common_divisor, least_common_multiple, twice};
 
 /// Bound of the numbers that fit one word, whose product is a single instruction; with the same
 /// room.
@@ -25,18 +28,18 @@ const WORD: f64 = (1_u64 << 62) as f64;
 /// A series of cosines or of sines, with all harmonics `0, 1, 2, ...`, the even or the odd ones; its
 /// numerators stand in a [list](ShortSeriesList) or a [buffer](SeriesBuffer).
 #[derive(Clone, Copy, Debug)]
-pub struct ShortSeries<'a> {
-    header: Header,
-    numerators: &'a [i128],
+pub struct ShortSeries<'a, W = i128> {
+    header: Header<W>,
+    numerators: &'a [W],
 }
 
 /// Everything of a series but its numerators.
 #[derive(Clone, Copy, Debug)]
-struct Header {
+struct Header<W> {
     /// Cosines or sines; a sine of harmonic zero has the numerator zero.
     wave: Wave,
     harmonics: HarmonicParity,
-    denominator: i128,
+    denominator: W,
     /// The largest absolute value of a numerator, rounded.
     largest: f64,
 }
@@ -72,17 +75,16 @@ impl HarmonicParity {
     }
 }
 
-impl<'a> ShortSeries<'a> {
+impl<'a, W: FixedWidth> ShortSeries<'a, W> {
     /// A series from numerators over a positive denominator; `None` if they are too long.
     pub fn new(
         wave: Wave,
         harmonics: HarmonicParity,
-        denominator: i128,
-        numerators: &'a [i128],
+        denominator: W,
+        numerators: &'a [W],
     ) -> Option<Self> {
-        let largest = numerators.iter().map(|numerator| numerator.unsigned_abs()).max();
-        let largest = size(largest.unwrap_or(0));
-        (largest < BOUND && denominator > 0).then_some(Self {
+        let largest = largest(numerators);
+        (largest < W::BOUND && denominator > W::zero()).then_some(Self {
             header: Header { wave, harmonics, denominator, largest },
             numerators,
         })
@@ -90,7 +92,10 @@ impl<'a> ShortSeries<'a> {
 
     /// The series zero.
     pub fn zero(wave: Wave, harmonics: HarmonicParity) -> Self {
-        Self { header: Header { wave, harmonics, denominator: 1, largest: 0.0 }, numerators: &[] }
+        Self {
+            header: Header { wave, harmonics, denominator: W::one(), largest: 0.0 },
+            numerators: &[],
+        }
     }
 
     /// Cosines or sines.
@@ -99,7 +104,7 @@ impl<'a> ShortSeries<'a> {
     }
 
     /// The common denominator, positive.
-    pub fn denominator(self) -> i128 {
+    pub fn denominator(self) -> W {
         self.header.denominator
     }
 
@@ -109,13 +114,13 @@ impl<'a> ShortSeries<'a> {
     }
 
     /// The numerators of the harmonics that may occur.
-    pub fn numerators(self) -> &'a [i128] {
+    pub fn numerators(self) -> &'a [W] {
         self.numerators
     }
 
     /// The numerator at a place, zero beyond the last.
-    pub fn numerator(self, index: usize) -> i128 {
-        self.numerators.get(index).copied().unwrap_or(0)
+    pub fn numerator(self, index: usize) -> W {
+        self.numerators.get(index).copied().unwrap_or(W::zero())
     }
 
     /// Whether every number is zero.
@@ -124,111 +129,72 @@ impl<'a> ShortSeries<'a> {
     }
 
     /// The coefficient at a place.
-    pub fn coefficient(self, index: usize) -> Option<ShortFraction> {
+    pub fn coefficient(self, index: usize) -> Option<ShortFraction<W>> {
         ShortFraction::new(self.numerator(index), self.header.denominator)
     }
 }
 
-/// Series one after the other, with all their numerators in one piece of memory.
-#[derive(Clone, Debug, Default)]
-pub struct ShortSeriesList {
-    /// Each series, and the end of its numerators.
-    series: Vec<(Header, usize)>,
-    numerators: Vec<i128>,
-}
-
-impl ShortSeriesList {
-    /// An empty list with room for so many series and numerators.
-    pub fn with_capacity(series: usize, numerators: usize) -> Self {
-        Self { series: Vec::with_capacity(series), numerators: Vec::with_capacity(numerators) }
+/// The largest absolute value, rounded.
+#[inline]
+fn largest<W: FixedWidth>(numerators: &[W]) -> f64 {
+    // The extremes by comparisons alone: the least number has no absolute value of its width.
+    let (mut least, mut most) = (W::zero(), W::zero());
+    for numerator in numerators {
+        (least, most) = (least.min(*numerator), most.max(*numerator));
     }
-
-    /// Number of series.
-    pub fn len(&self) -> usize {
-        self.series.len()
-    }
-
-    /// Whether there are no series.
-    pub fn is_empty(&self) -> bool {
-        self.series.is_empty()
-    }
-
-    /// The series at a place; `None` beyond the last.
-    pub fn get(&self, index: usize) -> Option<ShortSeries<'_>> {
-        (index < self.len()).then(|| self.known(index))
-    }
-
-    /// The series at a place that there is.
-    #[inline]
-    fn known(&self, index: usize) -> ShortSeries<'_> {
-        let (header, end) = self.series[index];
-        let start = if index == 0 { 0 } else { self.series[index - 1].1 };
-        ShortSeries { header, numerators: &self.numerators[start..end] }
-    }
-
-    /// Appends a series.
-    pub fn push(&mut self, series: ShortSeries) {
-        self.numerators.extend_from_slice(series.numerators);
-        self.series.push((series.header, self.numerators.len()));
-    }
-
-    /// Replaces the last series.
-    pub fn replace_last(&mut self, series: ShortSeries) {
-        self.series.pop();
-        self.numerators.truncate(self.series.last().map_or(0, |(_, end)| *end));
-        self.push(series);
-    }
+    least.size().max(most.size())
 }
 
 /// The result of an operation, in memory that serves one operation after the other.
 ///
 /// An operation that returns `None`, because a number is too long, leaves no series.
 #[derive(Clone, Debug)]
-pub struct SeriesBuffer {
-    header: Header,
-    numerators: Vec<i128>,
-    /// Numbers beside the numerators: sums of differences of harmonics, divisors.
-    others: Vec<i128>,
+pub struct SeriesBuffer<W = i128> {
+    header: Header<W>,
+    numerators: Vec<W>,
+    /// Numbers beside the numerators: those of differences of harmonics, divisors.
+    others: Vec<W>,
 }
 
-impl Default for SeriesBuffer {
+impl<W: FixedWidth> Default for SeriesBuffer<W> {
     fn default() -> Self {
         Self::with_capacity(0)
     }
 }
 
-impl SeriesBuffer {
+impl<W: FixedWidth> SeriesBuffer<W> {
     /// A series without terms, with room for so many.
     pub fn with_capacity(count: usize) -> Self {
         Self {
             header: ShortSeries::zero(Wave::Cosine, HarmonicParity::All).header,
             numerators: Vec::with_capacity(count),
-            others: Vec::with_capacity(count),
+            others: Vec::with_capacity(2 * count),
         }
     }
 
     /// The series.
-    pub fn series(&self) -> ShortSeries<'_> {
+    pub fn series(&self) -> ShortSeries<'_, W> {
         ShortSeries { header: self.header, numerators: &self.numerators }
     }
 
     /// Sets the header of the numerators; `None` if they are too long.
-    fn finish(&mut self, wave: Wave, harmonics: HarmonicParity, denominator: i128) -> Option<()> {
-        self.header = ShortSeries::new(wave, harmonics, denominator, &self.numerators)?.header;
-        Some(())
+    fn finish(&mut self, wave: Wave, harmonics: HarmonicParity, denominator: W) -> Option<()> {
+        let largest = largest(&self.numerators);
+        self.header = Header { wave, harmonics, denominator, largest };
+        (largest < W::BOUND && denominator > W::zero()).then_some(())
     }
 
     /// Sets a copy of a series.
-    pub fn set(&mut self, series: ShortSeries) {
+    pub fn set(&mut self, series: ShortSeries<W>) {
         self.numerators.clear();
-        self.numerators.extend_from_slice(series.numerators);
+        self.numerators.extend(series.numerators);
         self.header = series.header;
     }
 
     /// Changes the numerator at a place; `None` if it is too long.
-    pub fn set_numerator(&mut self, index: usize, numerator: i128) -> Option<()> {
+    pub fn set_numerator(&mut self, index: usize, numerator: W) -> Option<()> {
         if self.numerators.len() <= index {
-            self.numerators.resize(index + 1, 0);
+            self.numerators.resize(index + 1, W::zero());
         }
         self.numerators[index] = numerator;
         let Header { wave, harmonics, denominator, .. } = self.header;
@@ -238,25 +204,25 @@ impl SeriesBuffer {
     /// Reduces the series to lowest terms.
     pub fn reduce(&mut self) {
         // Powers of two are cancelled first; mostly no other common factor is left.
-        let all = self.numerators.iter().fold(0, |all, numerator| all | numerator);
+        let all = self.numerators.iter().fold(W::zero(), |all, numerator| all | *numerator);
         let denominator = self.header.denominator;
         let halvings = denominator.trailing_zeros();
-        let mut odd = denominator >> halvings;
+        let mut odd = denominator >> halvings as usize;
         for numerator in &self.numerators {
-            if odd == 1 {
+            if odd.is_one() {
                 break;
             }
             odd = greatest_common_divisor(odd, *numerator);
         }
-        let common = odd << halvings.min(all.trailing_zeros());
-        if common > 1 {
-            let shift = common.trailing_zeros();
+        let shift = halvings.min(all.trailing_zeros()) as usize;
+        let common = odd << shift;
+        if !common.is_one() {
             self.header.denominator = exact_quotient(denominator, common);
-            self.header.largest /= size(common.unsigned_abs());
+            self.header.largest /= common.size();
             for numerator in &mut self.numerators {
-                *numerator >>= shift;
-                if odd > 1 {
-                    *numerator = quotient(*numerator, odd);
+                *numerator = *numerator >> shift;
+                if !odd.is_one() {
+                    *numerator = numerator.quotient(odd);
                 }
             }
         }
@@ -264,21 +230,21 @@ impl SeriesBuffer {
 
     /// Multiplies the series by a fraction with a positive denominator, and reduces it to lowest
     /// terms; `None` if it is too long.
-    pub fn multiply(&mut self, numerator: i128, denominator: i128) -> Option<()> {
+    pub fn multiply(&mut self, numerator: W, denominator: W) -> Option<()> {
         let Header { wave, harmonics, denominator: own, largest } = self.header;
-        if largest * size(numerator.unsigned_abs()) >= BOUND {
+        if largest * numerator.size() >= W::BOUND {
             return None;
         }
         for own in &mut self.numerators {
-            *own = own.wrapping_mul(numerator);
+            *own = own.wrapping_mul(&numerator);
         }
-        self.finish(wave, harmonics, product(own, denominator)?)?;
+        self.finish(wave, harmonics, own.product(denominator)?)?;
         self.reduce();
         Some(())
     }
 
     /// Sets the derivative of a series; `None` if it is too long.
-    pub fn set_derivative(&mut self, series: ShortSeries) -> Option<()> {
+    pub fn set_derivative(&mut self, series: ShortSeries<W>) -> Option<()> {
         match series.wave() {
             Wave::Cosine => self.set_times_harmonics(series, Wave::Sine, |harmonic| -harmonic),
             Wave::Sine => self.set_times_harmonics(series, Wave::Cosine, |harmonic| harmonic),
@@ -286,21 +252,21 @@ impl SeriesBuffer {
     }
 
     /// Sets the second derivative of a series; `None` if it is too long.
-    pub fn set_second_derivative(&mut self, series: ShortSeries) -> Option<()> {
+    pub fn set_second_derivative(&mut self, series: ShortSeries<W>) -> Option<()> {
         self.set_times_harmonics(series, series.wave(), |harmonic| -(harmonic * harmonic))
     }
 
     fn set_times_harmonics(
         &mut self,
-        series: ShortSeries,
+        series: ShortSeries<W>,
         wave: Wave,
-        factor: impl Fn(i128) -> i128,
+        factor: impl Fn(W) -> W,
     ) -> Option<()> {
         self.numerators.clear();
         let harmonics = series.harmonics();
         for (index, numerator) in series.numerators.iter().enumerate() {
-            let harmonic = u32::try_from(harmonics.harmonic(index)).ok()?;
-            self.numerators.push(product(*numerator, factor(harmonic.into()))?);
+            let harmonic = self::harmonic(harmonics, index)?;
+            self.numerators.push(numerator.product(factor(harmonic))?);
         }
         self.finish(wave, harmonics, series.denominator())
     }
@@ -308,10 +274,10 @@ impl SeriesBuffer {
     /// Replaces the series by its derivative; `None` if that is too long.
     pub fn differentiate(&mut self) -> Option<()> {
         let Header { wave, harmonics, denominator, .. } = self.header;
-        let sign = if wave == Wave::Cosine { -1 } else { 1 };
         for (index, numerator) in self.numerators.iter_mut().enumerate() {
-            let harmonic = u32::try_from(harmonics.harmonic(index)).ok()?;
-            *numerator = product(*numerator, sign * i128::from(harmonic))?;
+            let harmonic = self::harmonic::<W>(harmonics, index)?;
+            let factor = if wave == Wave::Cosine { -harmonic } else { harmonic };
+            *numerator = numerator.product(factor)?;
         }
         self.finish(wave.other(), harmonics, denominator)
     }
@@ -323,13 +289,13 @@ impl SeriesBuffer {
         // cancelled.
         let Header { wave, harmonics, denominator, largest } = self.header;
         self.others.clear();
-        let mut common = 1_i128;
+        let mut common = W::one();
         for (index, numerator) in self.numerators.iter_mut().enumerate() {
-            let harmonic = harmonics.harmonic(index) as i128;
-            let divisor = harmonic * harmonic - 1;
-            if divisor == 0 || *numerator == 0 {
-                *numerator = 0;
-                self.others.push(1);
+            let harmonic = self::harmonic::<W>(harmonics, index)?;
+            let divisor = harmonic * harmonic - W::one();
+            if divisor.is_zero() || numerator.is_zero() {
+                *numerator = W::zero();
+                self.others.push(W::one());
                 continue;
             }
             // The divisor of the zeroth harmonic is minus one, hence the absolute value.
@@ -339,45 +305,45 @@ impl SeriesBuffer {
             self.others.push(left);
             common = least_common_multiple(common, left)?;
         }
-        if largest * size(common.unsigned_abs()) >= BOUND {
+        if largest * common.size() >= W::BOUND {
             return None;
         }
-        if common > 1 {
+        if !common.is_one() {
             for (numerator, left) in self.numerators.iter_mut().zip(&self.others) {
-                *numerator = numerator.wrapping_mul(exact_quotient(common, *left));
+                *numerator = numerator.wrapping_mul(&exact_quotient(common, *left));
             }
         }
-        self.finish(wave, harmonics, product(denominator, common)?)
+        self.finish(wave, harmonics, denominator.product(common)?)
     }
 
     /// Sets `sum of (numerator / denominator) series`; all series must have the same kind of waves.
     /// `None` if it is too long or there are no terms.
-    pub fn set_combination(&mut self, terms: &[(i128, i128, ShortSeries)]) -> Option<()> {
-        let mut common = 1;
+    pub fn set_combination(&mut self, terms: &[(W, W, ShortSeries<W>)]) -> Option<()> {
+        let mut common = W::one();
         let mut length = 0;
         let first = terms.first()?.2;
         for (_, denominator, series) in terms {
-            common = least_common_multiple(common, product(*denominator, series.denominator())?)?;
+            common = least_common_multiple(common, denominator.product(series.denominator())?)?;
             length = length.max(series.numerators.len());
         }
         let mut bound = 0.0;
         self.numerators.clear();
-        self.numerators.resize(length, 0);
+        self.numerators.resize(length, W::zero());
         for (numerator, denominator, series) in terms {
-            let own = denominator.wrapping_mul(series.denominator());
-            let factor = product(*numerator, exact_quotient(common, own))?;
-            let factor_size = power_of_two_above(factor.unsigned_abs());
-            bound += factor_size * series.header.largest;
-            if bound >= BOUND {
+            let own = denominator.wrapping_mul(&series.denominator());
+            let factor = numerator.product(exact_quotient(common, own))?;
+            let factor_bound = factor.bound();
+            bound += factor_bound * series.header.largest;
+            if bound >= W::BOUND {
                 return None;
             }
             let pairs = self.numerators.iter_mut().zip(series.numerators);
-            match factor_size.max(series.header.largest) < WORD {
-                true => {
-                    pairs.for_each(|(sum, own)| *sum = sum.wrapping_add(of_words(factor, *own)))
-                }
+            match !W::IS_WIDE || factor_bound.max(series.header.largest) < WORD {
+                true => pairs.for_each(|(sum, own)| {
+                    *sum = sum.wrapping_add(&factor.product_of_words(*own));
+                }),
                 false => {
-                    pairs.for_each(|(sum, own)| *sum = sum.wrapping_add(factor.wrapping_mul(*own)))
+                    pairs.for_each(|(sum, own)| *sum = sum.wrapping_add(&factor.wrapping_mul(own)))
                 }
             }
         }
@@ -388,149 +354,166 @@ impl SeriesBuffer {
     /// same kind of waves. `None` if it is too long, or there are not so many series.
     pub fn set_convolution(
         &mut self,
-        left: &ShortSeriesList,
-        right: &ShortSeriesList,
+        left: &ShortSeriesList<W>,
+        right: &ShortSeriesList<W>,
         first: usize,
         last: usize,
     ) -> Option<()> {
         if last >= left.len() || last.checked_sub(first)? >= right.len() {
             return None;
         }
-        let term = |i: usize| (1, left.known(i), right.known(last - i));
-        self.set_sum_of_products((first..=last).map(term))
+        let weight = |_| W::one();
+        self.set_sum_of_products(
+            first..last + 1,
+            weight,
+            |i| left.known(i),
+            |i| right.known(last - i),
+        )
     }
 
     /// Sets `sum of series_i series_(last - i)`, each pair once; `None` as for a
     /// [convolution](Self::set_convolution).
-    pub fn set_square(&mut self, series: &ShortSeriesList, last: usize) -> Option<()> {
+    pub fn set_square(&mut self, series: &ShortSeriesList<W>, last: usize) -> Option<()> {
         if last >= series.len() {
             return None;
         }
-        let term = |i: usize| {
-            let weight = if 2 * i == last { 1 } else { 2 };
-            (weight, series.known(i), series.known(last - i))
-        };
-        self.set_sum_of_products((0..=last / 2).map(term))
+        let weight = |i: usize| if 2 * i == last { W::one() } else { twice(W::one()) };
+        let (left, right) = (|i| series.known(i), |i| series.known(last - i));
+        self.set_sum_of_products(0..last / 2 + 1, weight, left, right)
     }
 
     /// Sets a product; `None` if it is too long.
-    pub fn set_product(&mut self, left: ShortSeries, right: ShortSeries) -> Option<()> {
-        self.set_sum_of_products(std::iter::once((1, left, right)))
+    pub fn set_product(&mut self, left: ShortSeries<W>, right: ShortSeries<W>) -> Option<()> {
+        self.set_sum_of_products(0..1, |_| W::one(), |_| left, |_| right)
     }
 
-    /// Sets `sum of weight left right`; all products must have the same kind of waves.
+    /// Sets `sum of weight left right` over some terms; all products must have the same kind of
+    /// waves.
     fn set_sum_of_products<'a>(
         &mut self,
-        terms: impl Iterator<Item = (i128, ShortSeries<'a>, ShortSeries<'a>)> + Clone,
-    ) -> Option<()> {
-        let mut common = 1;
+        range: Range<usize>,
+        weight: impl Fn(usize) -> W,
+        left: impl Fn(usize) -> ShortSeries<'a, W>,
+        right: impl Fn(usize) -> ShortSeries<'a, W>,
+    ) -> Option<()>
+    where
+        W: 'a,
+    {
+        let mut common = W::one();
         let mut length = 1;
         let mut kind = (Wave::Cosine, HarmonicParity::Even);
-        for (_, left, right) in terms.clone() {
-            let own = product(left.denominator(), right.denominator())?;
+        for index in range.clone() {
+            let (left, right) = (left(index), right(index));
+            let own = left.denominator().product(right.denominator())?;
             common = least_common_multiple(common, own)?;
             length = length.max(left.numerators.len() + right.numerators.len());
             let wave = if left.wave() == right.wave() { Wave::Cosine } else { Wave::Sine };
             kind = (wave, left.harmonics().times(right.harmonics()));
         }
         let mut bound = 0.0;
-        // The sums of the harmonics' sums and, apart, of their differences.
-        let Self { numerators: upper, others: lower, .. } = self;
-        for sums in [&mut *upper, &mut *lower] {
-            sums.clear();
-            sums.resize(length, 0);
+        // The harmonics' sums and, apart, their differences, from minus the length on.
+        let Self { numerators: sums, others: differences, .. } = self;
+        for (list, length) in [(&mut *sums, length), (&mut *differences, 2 * length)] {
+            list.clear();
+            list.resize(length, W::zero());
         }
-        for (weight, left, right) in terms {
-            let own = left.denominator().wrapping_mul(right.denominator());
-            let factor = product(weight, exact_quotient(common, own))?;
+        for index in range {
+            let (left, right) = (left(index), right(index));
+            let own = left.denominator().wrapping_mul(&right.denominator());
+            let factor = weight(index).product(exact_quotient(common, own))?;
             let (short, long) = match left.numerators.len() <= right.numerators.len() {
-                true => (left, right),
-                false => (right, left),
+                true => (&left, &right),
+                false => (&right, &left),
             };
-            let largest = power_of_two_above(factor.unsigned_abs()) * short.header.largest;
+            let largest = factor.bound() * short.header.largest;
             // Every harmonic of the result gets at most one term from sums of harmonics and two from
             // differences per coefficient of the shorter factor.
             bound += largest * long.header.largest * (3 * short.numerators.len()) as f64;
-            if bound >= BOUND {
+            if bound >= W::BOUND {
                 return None;
             }
-            let (sums, pair) = ((&mut upper[..], &mut lower[..]), (short, long));
+            let (into, pair) = ((&mut sums[..], &mut differences[..]), (short, long));
             // If a factor fits one word, its products take a third of the instructions, or one.
-            match (largest < WORD, long.header.largest < WORD) {
-                (true, true) => add_doubled_product(sums, factor, pair, of_words),
-                (true, false) => add_doubled_product(sums, factor, pair, word_times),
-                (false, true) => add_doubled_product(sums, factor, pair, times_word),
-                _ => add_doubled_product(sums, factor, pair, i128::wrapping_mul),
+            let fits = |largest: f64| !W::IS_WIDE || largest < WORD;
+            match (fits(largest), fits(long.header.largest)) {
+                (true, true) => add_doubled_product(into, factor, pair, W::product_of_words),
+                (true, false) => add_doubled_product(into, factor, pair, W::word_times),
+                (false, true) => add_doubled_product(into, factor, pair, times_word),
+                _ => add_doubled_product(into, factor, pair, |own, other| own.wrapping_mul(&other)),
             }
         }
-        for (upper, lower) in upper.iter_mut().zip(lower) {
-            *upper = upper.wrapping_add(*lower);
+        // The harmonics of negative differences: -1, -2, ... or, where only odd ones occur, -1, -3, ...
+        let (below, above) = differences.split_at(length);
+        let first = usize::from(kind.1 != HarmonicParity::Odd);
+        sums[..first].iter_mut().zip(above).for_each(|(sum, own)| *sum = sum.wrapping_add(own));
+        let both = above[first..].iter().zip(below.iter().rev());
+        for (sum, (above, below)) in sums[first..].iter_mut().zip(both) {
+            let differences = match kind.0 {
+                Wave::Cosine => above.wrapping_add(below),
+                Wave::Sine => above.wrapping_sub(below),
+            };
+            *sum = sum.wrapping_add(&differences);
         }
         if kind.0 == Wave::Sine && kind.1 != HarmonicParity::Odd {
-            upper[0] = 0;
+            sums[0] = W::zero();
         }
-        let last = upper.iter().rposition(|sum| *sum != 0).unwrap_or(0);
-        upper.truncate(last + 1);
-        self.finish(kind.0, kind.1, product(common, 2)?)
+        let last = sums.iter().rposition(|sum| !sum.is_zero()).unwrap_or(0);
+        sums.truncate(last + 1);
+        self.finish(kind.0, kind.1, common.product(twice(W::one()))?)
     }
 }
 
-/// The product of two numbers that fit one word.
-fn of_words(left: i128, right: i128) -> i128 {
-    i128::from(left as i64).wrapping_mul(i128::from(right as i64))
-}
-
-/// The product of a number that fits one word and any other.
-fn word_times(left: i128, right: i128) -> i128 {
-    i128::from(left as i64).wrapping_mul(right)
+/// The harmonic at a place as a factor; `None` if its square does not fit.
+#[inline]
+fn harmonic<W: FixedWidth>(harmonics: HarmonicParity, index: usize) -> Option<W> {
+    cast(u32::try_from(harmonics.harmonic(index)).ok().filter(|harmonic| *harmonic < 1 << 31)?)
 }
 
 /// The product of any number and one that fits one word.
-fn times_word(left: i128, right: i128) -> i128 {
-    left.wrapping_mul(i128::from(right as i64))
+#[inline]
+fn times_word<W: FixedWidth>(left: W, right: W) -> W {
+    right.word_times(left)
 }
 
-/// Adds twice a product by `2 cos i cos j = cos(i+j) + cos(i-j)` and the similar formulas with
-/// sines, the sums of harmonics and their differences apart; fast if the longer factor is the
-/// second.
-fn add_doubled_product(
-    (upper, lower): (&mut [i128], &mut [i128]),
-    factor: i128,
-    (short, long): (ShortSeries, ShortSeries),
-    multiply: impl Fn(i128, i128) -> i128 + Copy,
+/// Adds twice a product by `2 cos i cos j = cos(j+i) + cos(j-i)` and the similar formulas with
+/// sines, the sums of harmonics and their differences apart, with the difference zero, or one where
+/// only odd ones occur, in the middle; fast if the longer factor is the second.
+fn add_doubled_product<W: FixedWidth>(
+    (sums, differences): (&mut [W], &mut [W]),
+    factor: W,
+    (short, long): (&ShortSeries<W>, &ShortSeries<W>),
+    multiply: impl Fn(W, W) -> W + Copy,
 ) {
     use HarmonicParity::{Even, Odd};
-    let both_odd = short.harmonics() == Odd && long.harmonics() == Odd;
-    let apart = short.harmonics() != long.harmonics();
-    let [short_is_sine, long_is_sine] = [short, long].map(|series| series.wave() == Wave::Sine);
-    let signed = |negative: bool, number: i128| {
-        if negative { number.wrapping_neg() } else { number }
+    let (first, middle) = match (short.harmonics(), long.harmonics()) {
+        (Odd, Odd) => (1, differences.len() / 2),
+        (Odd, Even) => (0, differences.len() / 2 - 1),
+        _ => (0, differences.len() / 2),
     };
-    // The sine of a difference takes the sign of that difference.
-    let upper_is_negative = short_is_sine && long_is_sine;
-    let above_is_opposite = upper_is_negative != (short_is_sine && !long_is_sine);
-    let below_is_opposite = upper_is_negative != (long_is_sine && !short_is_sine);
+    let [short_is_sine, long_is_sine] = [short, long].map(|series| series.wave() == Wave::Sine);
     for (place, own) in short.numerators.iter().enumerate() {
-        let own = signed(upper_is_negative, own.wrapping_mul(factor));
-        if own == 0 {
+        let own = own.wrapping_mul(&factor);
+        if own.is_zero() {
             continue;
         }
-        let split = place + usize::from(apart && long.harmonics() == Even);
-        let (below, above) = long.numerators.split_at(split.min(long.numerators.len()));
-        let (near, far) = upper[place + usize::from(both_odd)..].split_at_mut(below.len());
-        let differences = lower.iter_mut();
-        for ((upper, lower), other) in far.iter_mut().zip(differences).zip(above) {
-            let product = multiply(own, *other);
-            *upper = upper.wrapping_add(product);
-            *lower = lower.wrapping_add(signed(above_is_opposite, product));
-        }
-        // The last of those below is nearest to this place.
-        let differences = lower.iter_mut().skip(usize::from(!apart) + split - below.len());
-        let pairs = near.iter_mut().rev().zip(differences);
-        for ((upper, lower), other) in pairs.zip(below.iter().rev()) {
-            let product = multiply(own, *other);
-            *upper = upper.wrapping_add(product);
-            *lower = lower.wrapping_add(signed(below_is_opposite, product));
+        let sums = sums[first + place..].iter_mut();
+        let differences = differences[middle - place..].iter_mut();
+        let all = sums.zip(differences).zip(long.numerators);
+        // 2 sin i sin j = -cos(j+i) + cos(j-i),   2 sin i cos j = sin(j+i) - sin(j-i)
+        match short_is_sine {
+            false => all.for_each(|((sum, difference), other)| {
+                let product = multiply(own, *other);
+                *sum = sum.wrapping_add(&product);
+                *difference = difference.wrapping_add(&product);
+            }),
+            true => {
+                let own = if long_is_sine { own.wrapping_neg() } else { own };
+                all.for_each(|((sum, difference), other)| {
+                    let product = multiply(own, *other);
+                    *sum = sum.wrapping_add(&product);
+                    *difference = difference.wrapping_sub(&product);
+                });
+            }
         }
     }
 }
@@ -542,29 +525,35 @@ mod tests {
     use crate::exact::{Integer, Integers};
 
     /// The series with integers of any length.
-    fn long(series: ShortSeries) -> FourierSeries<Integers> {
+    fn long<W: FixedWidth>(series: ShortSeries<W>) -> FourierSeries<Integers> {
         let mut coefficients = vec![];
         for (index, numerator) in series.numerators().iter().enumerate() {
             coefficients.resize(series.harmonics().harmonic(index), Integer::from(0));
-            coefficients.push(Integer::from(*numerator));
+            coefficients.push((*numerator).into());
         }
         let (cosine, sine) = match series.wave() {
             Wave::Cosine => (coefficients, vec![]),
             Wave::Sine => (vec![], coefficients),
         };
-        FourierSeries::from_parts(Integers, cosine, sine).over(&Integer::from(series.denominator()))
+        FourierSeries::from_parts(Integers, cosine, sine).over(&series.denominator().into())
     }
 
     /// The result of an operation.
-    fn found(operation: impl Fn(&mut SeriesBuffer) -> Option<()>) -> FourierSeries<Integers> {
+    fn found<W: FixedWidth>(
+        operation: impl Fn(&mut SeriesBuffer<W>) -> Option<()>,
+    ) -> FourierSeries<Integers> {
         let mut buffer = SeriesBuffer::default();
         // The buffer is not empty, as it is not in use.
-        buffer.set_numerator(20, 17).expect("short");
+        buffer.set_numerator(20, small(17)).expect("short");
         operation(&mut buffer).expect("short");
         long(buffer.series())
     }
 
-    fn list(series: &[ShortSeries]) -> ShortSeriesList {
+    fn small<W: FixedWidth>(number: i64) -> W {
+        cast(number).expect("a small number")
+    }
+
+    fn list<W: FixedWidth>(series: &[ShortSeries<W>]) -> ShortSeriesList<W> {
         let mut list = ShortSeriesList::default();
         series.iter().for_each(|series| list.push(*series));
         list
@@ -572,17 +561,17 @@ mod tests {
 
     /// Series of both waves and all kinds of harmonics, with numerators that are not multiples of
     /// each other.
-    fn examples() -> ShortSeriesList {
+    fn examples<W: FixedWidth>() -> ShortSeriesList<W> {
         let mut examples = ShortSeriesList::default();
         for wave in [Wave::Cosine, Wave::Sine] {
             for harmonics in [HarmonicParity::All, HarmonicParity::Even, HarmonicParity::Odd] {
                 for (length, denominator) in [(1, 3), (4, 32), (7, 90)] {
-                    let mut numerators: Vec<i128> =
-                        (0..length).map(|k| k * k * k - 9 * k + 5).collect();
+                    let mut numerators: Vec<W> =
+                        (0..length).map(|k| small(k * k * k - 9 * k + 5)).collect();
                     if wave == Wave::Sine && harmonics != HarmonicParity::Odd {
-                        numerators[0] = 0;
+                        numerators[0] = W::zero();
                     }
-                    let series = ShortSeries::new(wave, harmonics, denominator, &numerators);
+                    let series = ShortSeries::new(wave, harmonics, small(denominator), &numerators);
                     examples.push(series.expect("short"));
                 }
             }
@@ -592,11 +581,16 @@ mod tests {
 
     #[test]
     fn short_series_are_those_of_any_length() {
+        agree::<i64>();
+        agree::<i128>();
+    }
+
+    fn agree<W: FixedWidth>() {
         let mut products = 0;
-        let examples = examples();
+        let examples = examples::<W>();
         let all = || (0..examples.len()).map(|index| examples.get(index).expect("an example"));
         for left in all() {
-            let changed = |change: fn(&mut SeriesBuffer) -> Option<()>| {
+            let changed = |change: fn(&mut SeriesBuffer<W>) -> Option<()>| {
                 found(|buffer| {
                     buffer.set(left);
                     change(buffer)
@@ -624,15 +618,16 @@ mod tests {
                 }
                 products += 1;
                 let (long_left, long_right) = (long(left), long(right));
-                let sum =
-                    found(|buffer| buffer.set_sum_of_products(std::iter::once((3, left, right))));
+                let sum = found(|buffer| {
+                    buffer.set_sum_of_products(0..1, |_| small(3), |_| left, |_| right)
+                });
                 let expected = fourier::sum_of_products(&Integers, &[(3, &long_left, &long_right)]);
                 assert_eq!(sum, expected, "{left:?} {right:?}");
                 let product = found(|buffer| buffer.set_product(left, right));
                 assert_eq!(product, long_left.product(&long_right));
                 let (forth, back) = (list(&[left, right]), list(&[right, left]));
                 let twice = fourier::sum_of_products(&Integers, &[(2, &long_left, &long_right)]);
-                let convolution = |other: &ShortSeriesList, first| {
+                let convolution = |other: &ShortSeriesList<W>, first| {
                     found(|buffer| buffer.set_convolution(&forth, other, first, 1))
                 };
                 assert_eq!(convolution(&forth, 0), twice);
@@ -642,7 +637,7 @@ mod tests {
                     let squares = [(1, &long_left, &long_left), (1, &long_right, &long_right)];
                     let expected = fourier::sum_of_products(&Integers, &squares);
                     assert_eq!(convolution(&back, 0), expected);
-                    let terms = [(2, 7, left), (-5, 1, right)];
+                    let terms = [(small(2), small(7), left), (small(-5), small(1), right)];
                     let sum = found(|buffer| buffer.set_combination(&terms));
                     let expected = fourier::linear_combination(
                         &Integers,

@@ -12,7 +12,7 @@
 //! Terms with the same power of the small parameter and the same symbols share one `u`. At each
 //! point the recursion is that over [residues](super::modular); the fractions are found by the
 //! remainders of a few primes, and tried modulo one prime more. At a few points the recursion in
-//! [two words](super::fixed_width) takes the place of primes.
+//! [one word or two](super::fixed_width) takes the place of primes.
 //!
 //! Cost: for `P` points in the lower set of the highest order, `P` runs of the recursion for each
 //! prime, where products of polynomials would take `P^2` products of coefficients each. The points
@@ -46,7 +46,8 @@ type Symbols = Polynomials<Integers>;
 /// as fast again with three to the second order, and as fast with two to the sixth.
 const FEW: usize = WIDTH;
 
-/// The same for one word.
+/// The same for one word: with three symbols, ten points take two thirds of the time of primes, and
+/// fifteen three quarters.
 const MORE: usize = 2 * WIDTH;
 
 /// Number of points times orders up to which one thread is faster than starting several.

@@ -43,7 +43,7 @@
 use std::cell::Cell;
 use std::f64::consts::TAU;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DMatrixViewMut, DVector};
 
 use super::harmonics::{Harmonics, Transform};
 use super::ode::newton::{Progress, newton};
@@ -342,16 +342,19 @@ impl HarmonicBalance {
     /// period, twice as many as harmonics at least.
     pub fn coefficients_of(&self, positions: &[&[f64]]) -> DVector<f64> {
         let of_coordinate = |positions: &&[f64]| {
-            let count = positions.len().max(1) as f64;
+            let count = positions.len().max(1);
+            let step = TAU / count as f64;
+            let waves: Vec<(f64, f64)> =
+                (0..count).map(|index| (step * index as f64).sin_cos()).collect();
             let harmonic = |harmonic: usize| {
-                let wave = |(index, value): (usize, &f64)| {
-                    let (sine, cosine) = (TAU * (harmonic * index) as f64 / count).sin_cos();
-                    (value * cosine, value * sine)
-                };
-                let sums = positions.iter().enumerate().map(wave);
-                let (cosines, sines) =
-                    sums.fold((0.0, 0.0), |sum, next| (sum.0 + next.0, sum.1 + next.1));
-                (2.0 * cosines / count, 2.0 * sines / count)
+                let mut sums = (0.0, 0.0);
+                let mut place = 0;
+                for value in *positions {
+                    let (sine, cosine) = waves[place];
+                    sums = (sums.0 + value * cosine, sums.1 + value * sine);
+                    place = (place + harmonic) % count;
+                }
+                (2.0 * sums.0 / count as f64, 2.0 * sums.1 / count as f64)
             };
             let (cosines, sines) = (0..=self.harmonics).map(harmonic).unzip();
             Harmonics { cosines, sines }
@@ -396,14 +399,14 @@ impl HarmonicBalance {
 
     /// Arranges the coefficients of each coordinate in the order of the unknowns.
     fn in_order(&self, harmonics: impl Iterator<Item = Harmonics>) -> DVector<f64> {
-        let all = harmonics.flat_map(|Harmonics { cosines, sines }| {
-            (0..self.block()).map(move |index| match index {
-                0 => 0.5 * cosines[0],
-                odd if odd % 2 == 1 => cosines[odd.div_ceil(2)],
-                even => sines[even / 2],
-            })
-        });
-        DVector::from_iterator(self.size(), all)
+        let mut all = Vec::with_capacity(self.size());
+        for Harmonics { cosines, sines } in harmonics {
+            all.push(0.5 * cosines[0]);
+            for (cosine, sine) in cosines[1..=self.harmonics].iter().zip(&sines[1..]) {
+                all.extend([*cosine, *sine]);
+            }
+        }
+        DVector::from_vec(all)
     }
 
     /// The residual and its derivatives on a motion, given by [`HarmonicBalance::motion`] and by
@@ -495,7 +498,7 @@ impl HarmonicBalance {
                 [1 + j, 1 + n + j].map(|column| spectrum(i, column, 2 * self.harmonics));
             let size = self.block();
             let mut block = jacobian.view_mut((i * size, j * size), (size, size));
-            block.copy_from(&self.coupling(&stiffness, &damping, omega));
+            self.add_coupling(&stiffness, &damping, omega, block.as_view_mut());
             if i == j {
                 for row in 1..size {
                     block[(row, row)] -= (omega * row.div_ceil(2) as f64).powi(2);
@@ -509,30 +512,46 @@ impl HarmonicBalance {
         Some(Linearised { residual: vector(0), jacobian, scale })
     }
 
-    /// The derivatives of the harmonics of a force by the unknowns of a coordinate, from the
+    /// Adds the derivatives of the harmonics of a force by the unknowns of a coordinate, from the
     /// harmonics of its derivatives by position and velocity.
-    fn coupling(&self, stiffness: &Harmonics, damping: &Harmonics, omega: f64) -> DMatrix<f64> {
-        // Coefficients (k; cos or sin) of s(theta) times the wave (l; cos or sin), s having these
-        // harmonics.
-        let coupled = |s: &Harmonics, (k, k_sine): (isize, bool), (l, l_sine): (isize, bool)| {
-            0.5 * match (k_sine, l_sine) {
-                (false, false) => s.cosine(k - l) + s.cosine(k + l),
-                (false, true) => s.sine(k + l) + s.sine(l - k),
-                (true, false) => s.sine(k + l) + s.sine(k - l),
-                (true, true) => s.cosine(k - l) - s.cosine(k + l),
-            }
+    fn add_coupling(
+        &self,
+        stiffness: &Harmonics,
+        damping: &Harmonics,
+        omega: f64,
+        mut block: DMatrixViewMut<f64>,
+    ) {
+        // Coefficients (cos or sin of k) of s(theta) times the wave (cos or sin of l), s having these
+        // harmonics: [[cos by cos, cos by sin], [sin by cos, sin by sin]].
+        let coupled = |s: &Harmonics, k: isize, l: isize| {
+            let (near, far) = (s.cosine(k - l), s.cosine(k + l));
+            let (apart, together) = (s.sine(k - l), s.sine(k + l));
+            [
+                [0.5 * (near + far), 0.5 * (together - apart)],
+                [0.5 * (together + apart), 0.5 * (near - far)],
+            ]
         };
-        let place =
-            |index: usize| (index.div_ceil(2) as isize, index > 0 && index.is_multiple_of(2));
-        DMatrix::from_fn(self.block(), self.block(), |row, column| {
-            let ((k, k_sine), (l, l_sine)) = (place(row), place(column));
-            // The derivative of a cosine is minus a sine, and of a sine a cosine.
-            let turned = if l_sine { 1.0 } else { -1.0 } * omega * l as f64;
-            let value = coupled(stiffness, (k, k_sine), (l, l_sine))
-                + turned * coupled(damping, (k, k_sine), (l, !l_sine));
-            // The mean is half the coefficient of harmonic 0.
-            if k == 0 { 0.5 * value } else { value }
-        })
+        for l in 0..=self.harmonics {
+            for k in 0..=self.harmonics {
+                let of_stiffness = coupled(stiffness, k as isize, l as isize);
+                let of_damping = coupled(damping, k as isize, l as isize);
+                // The derivative of a cosine is minus a sine, and of a sine a cosine.
+                let speed = omega * l as f64;
+                // The mean is half the coefficient of harmonic 0, and has no sine.
+                let part = if k == 0 { 0.5 } else { 1.0 };
+                for row in 0..if k == 0 { 1 } else { 2 } {
+                    let [by_cosine, by_sine] = of_stiffness[row];
+                    let [damped_cosine, damped_sine] = of_damping[row];
+                    let place = (2 * k + row).saturating_sub(1);
+                    if l == 0 {
+                        block[(place, 0)] += part * by_cosine;
+                    } else {
+                        block[(place, 2 * l - 1)] += part * (by_cosine - speed * damped_sine);
+                        block[(place, 2 * l)] += part * (by_sine + speed * damped_cosine);
+                    }
+                }
+            }
+        }
     }
 
     /// Newton's method for the unknowns at a fixed parameter; `equations` gives the residual and

@@ -96,38 +96,55 @@ fn is_wide(pair: &[[f64; 2]]) -> bool {
 /// vanishes; `None` if it vanishes nowhere, or has no value on the way.
 fn swings(driven: &Driven, parameter: f64) -> Option<f64> {
     const PHASES: usize = 16;
+    let force = |x: f64, theta: f64| driven.force(&[x, 0.0, theta, parameter]);
+    let theta = |phase: usize| TAU * (phase as f64 + 0.5) / PHASES as f64 * driven.periods as f64;
+    let at_places = |theta: f64| -> Vec<[f64; 2]> {
+        places().map(|place| [force(place, theta), force(-place, theta)]).collect()
+    };
+    // A drive that does not depend on the place moves all forces at once.
+    let first = driven.drive_is_added().then(|| at_places(theta(0)));
     let mut sum = 0.0;
     for phase in 0..PHASES {
-        let theta = TAU * (phase as f64 + 0.5) / PHASES as f64 * driven.periods as f64;
-        let force = |x: f64| driven.force(&[x, 0.0, theta, parameter]);
-        let place = outermost_zero(force)?;
-        sum += driven.slopes(&[place, 0.0, theta, parameter])[0].abs() / PHASES as f64;
+        let theta_here = theta(phase);
+        let drive = force(0.0, theta_here) - force(0.0, theta(0));
+        let forces = match &first {
+            Some(first) if drive.is_finite() => {
+                first.iter().map(|pair| pair.map(|force| force + drive)).collect()
+            }
+            _ => at_places(theta_here),
+        };
+        let place = outermost_zero(&forces, |x| force(x, theta_here))?;
+        sum += driven.slopes(&[place, 0.0, theta_here, parameter])[0].abs() / PHASES as f64;
     }
     let drive = driven.frequency_at(parameter) * driven.periods as f64;
     let swings = sum.sqrt() / drive;
     swings.is_finite().then_some(swings)
 }
 
-/// The zero of a function that is farthest from zero, within 1e8; `None` if there is none.
-fn outermost_zero(function: impl Fn(f64) -> f64) -> Option<f64> {
+/// The places at which a zero is looked for, on either side, from the farthest on.
+fn places() -> impl Iterator<Item = f64> {
     const FARTHEST: f64 = 1e8;
     const NEAREST: f64 = 1e-8;
     const RATIO: f64 = 1.25;
-    let mut outer = FARTHEST;
-    let mut signs = [outer, -outer].map(&function);
-    while outer > NEAREST {
-        let inner = outer / RATIO;
-        for (side, sign) in [1.0, -1.0].into_iter().zip(&mut signs) {
-            let here = function(side * inner);
+    let inner = |place: &f64| (*place > NEAREST).then_some(place / RATIO);
+    std::iter::successors(Some(FARTHEST), inner)
+}
+
+/// The zero of a function that is farthest from zero, from its values at the [`places`] on either side;
+/// `None` if there is none.
+fn outermost_zero(values: &[[f64; 2]], function: impl Fn(f64) -> f64) -> Option<f64> {
+    let mut signs = *values.first()?;
+    let places: Vec<f64> = places().collect();
+    for (pair, here) in places.windows(2).zip(&values[1..]) {
+        for (side, (sign, here)) in [1.0, -1.0].into_iter().zip(signs.iter_mut().zip(here)) {
             if !here.is_finite() {
                 return None;
             }
             if here * *sign <= 0.0 && sign.is_finite() {
-                return find_root(&function, side * inner, side * outer).ok();
+                return find_root(&function, side * pair[1], side * pair[0]).ok();
             }
-            *sign = here;
+            *sign = *here;
         }
-        outer = inner;
     }
     (signs[0] * signs[1] <= 0.0).then_some(0.0)
 }

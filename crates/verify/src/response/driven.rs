@@ -499,6 +499,11 @@ impl Driven {
         (0..self.jumps.len()).map(|index| side(self.height(index, [at[0], at[1]], at[3]))).collect()
     }
 
+    /// Whether the drive is a term that depends on no place and no velocity.
+    pub(super) fn drive_is_added(&self) -> bool {
+        self.drive_is_added
+    }
+
     /// Whether a motion is followed by its Taylor series.
     pub(super) fn has_series(&self) -> bool {
         self.series[0].is_some()

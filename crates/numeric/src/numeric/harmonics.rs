@@ -51,7 +51,11 @@ impl Harmonics {
 
 /// The discrete Fourier transform of a fixed number of samples.
 #[derive(Clone)]
-pub struct Transform(Arc<dyn Fft<f64>>);
+pub struct Transform {
+    whole: Arc<dyn Fft<f64>>,
+    /// The transform of half of an even number of samples, and `e^(-i theta_k)` for each of them.
+    half: Option<(Arc<dyn Fft<f64>>, Arc<[Complex<f64>]>)>,
+}
 
 impl std::fmt::Debug for Transform {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -62,12 +66,20 @@ impl std::fmt::Debug for Transform {
 impl Transform {
     /// The transform of this many samples per period.
     pub fn new(samples: usize) -> Self {
-        Self(FftPlanner::new().plan_fft_forward(samples))
+        let mut planner = FftPlanner::new();
+        let half = samples / 2;
+        let turns =
+            || (0..half).map(|k| Complex::cis(-std::f64::consts::TAU * k as f64 / samples as f64));
+        let is_even = samples.is_multiple_of(2) && half > 0;
+        Self {
+            whole: planner.plan_fft_forward(samples),
+            half: is_even.then(|| (planner.plan_fft_forward(half), turns().collect())),
+        }
     }
 
     /// The number of samples.
     pub fn samples(&self) -> usize {
-        self.0.len()
+        self.whole.len()
     }
 
     /// The harmonics of samples, up to `count`, which is at most half the number of samples.
@@ -79,13 +91,38 @@ impl Transform {
             cosines[0] = 2.0 * first;
             return Harmonics { cosines, sines: vec![0.0; count + 1] };
         }
-        let mut parts: Vec<Complex<f64>> =
-            values.iter().map(|value| Complex::from(*value)).collect();
-        self.0.process(&mut parts);
+        let parts = self.spectrum(values, count);
         let factor = 2.0 / values.len() as f64;
-        let (cosines, sines) =
-            parts.iter().take(count + 1).map(|part| (factor * part.re, -factor * part.im)).unzip();
-        Harmonics { cosines, sines }
+        Harmonics {
+            cosines: parts.iter().map(|part| factor * part.re).collect(),
+            sines: parts.iter().map(|part| -factor * part.im).collect(),
+        }
+    }
+
+    /// The sums `sum_j f_j e^(-i k theta_j)` for k up to `count`, at most half the number of samples.
+    /// An even number of real samples is half as many complex ones: with z_j = f_2j + i f_(2j+1) the
+    /// sum is `Z_k + Z*_(-k)` over the even samples and, turned by theta_k, `-i (Z_k - Z*_(-k))` over
+    /// the odd ones, each by two.
+    fn spectrum(&self, values: &[f64], count: usize) -> Vec<Complex<f64>> {
+        let Some((half, turns)) = &self.half else {
+            let mut parts: Vec<Complex<f64>> =
+                values.iter().map(|value| Complex::from(*value)).collect();
+            self.whole.process(&mut parts);
+            parts.truncate(count + 1);
+            return parts;
+        };
+        let pairs = values.chunks_exact(2);
+        let mut parts: Vec<Complex<f64>> =
+            pairs.map(|pair| Complex::new(pair[0], pair[1])).collect();
+        half.process(&mut parts);
+        let n = parts.len();
+        let part = |k: usize| {
+            let (here, mirrored) = (parts[k % n], parts[(n - k % n) % n].conj());
+            let turn = if k < n { turns[k] } else { -turns[k - n] };
+            let odd = here - mirrored;
+            0.5 * (here + mirrored + turn * Complex::new(odd.im, -odd.re))
+        };
+        (0..=count).map(part).collect()
     }
 
     /// Returns two sums of waves at the samples, as [`Transform::sum_of_waves`] does each, by one
@@ -102,7 +139,7 @@ impl Transform {
             parts[harmonic] += 0.5 * Complex::new(a - d, b + c);
             parts[(samples - harmonic) % samples] += 0.5 * Complex::new(a + d, c - b);
         }
-        self.0.process(&mut parts);
+        self.whole.process(&mut parts);
         parts.iter().map(|part| [part.re, part.im]).collect()
     }
 
@@ -112,7 +149,7 @@ impl Transform {
         let mut parts: Vec<Complex<f64>> =
             waves.map(|[cosine, sine]| Complex::new(cosine, sine)).collect();
         parts.resize(self.samples(), Complex::from(0.0));
-        self.0.process(&mut parts);
+        self.whole.process(&mut parts);
         parts.iter().map(|part| part.re).collect()
     }
 }
@@ -121,21 +158,28 @@ impl Transform {
 mod tests {
     use super::*;
 
-    /// Against the sums that define them, and there and back.
+    /// Against the sums that define them, of an even number of samples and of an odd one, and there
+    /// and back.
     #[test]
     fn harmonics_are_the_sums_that_define_them() {
-        let transform = Transform::new(64);
-        let phase = |sample: usize| std::f64::consts::TAU * sample as f64 / 64.0;
+        for samples in [64, 6, 45] {
+            harmonics_of(samples);
+        }
+    }
+
+    fn harmonics_of(samples: usize) {
+        let transform = Transform::new(samples);
+        let phase = |sample: usize| std::f64::consts::TAU * sample as f64 / samples as f64;
         let values: Vec<f64> =
-            (0..64).map(|sample| (2.0 * phase(sample).cos()).exp().sin()).collect();
-        let found = transform.harmonics(&values, 20);
+            (0..samples).map(|sample| (2.0 * phase(sample).cos()).exp().sin()).collect();
+        let found = transform.harmonics(&values, samples / 2);
         for (harmonic, (cosine, sine)) in found.cosines.iter().zip(&found.sines).enumerate() {
             let sum = |wave: fn(f64) -> f64| -> f64 {
                 let terms = values.iter().enumerate();
                 terms
                     .map(|(sample, value)| value * wave(harmonic as f64 * phase(sample)))
                     .sum::<f64>()
-                    / 32.0
+                    / (0.5 * samples as f64)
             };
             assert!((cosine - sum(f64::cos)).abs() < 1e-14);
             assert!((sine - sum(f64::sin)).abs() < 1e-14);

@@ -198,17 +198,20 @@ impl<'a> AddedHarmonic<'a> {
     fn sums(&self, amplitude: f64, means: &[f64]) -> Vec<Option<Sums>> {
         let count = self.samples.len() / means.len();
         let speed = self.number as f64 * self.omega;
-        let means = means.iter().flat_map(|mean| std::iter::repeat_n(*mean, count));
-        let (positions, velocities): (Vec<f64>, Vec<f64>) = (self.samples.iter().zip(means))
-            .map(|(Sample { known: [x, v], wave: [cosine, sine], .. }, mean)| {
-                (x + mean + amplitude * cosine, v - amplitude * speed * sine)
-            })
-            .unzip();
+        let memory = || Vec::with_capacity(self.samples.len());
+        let (mut positions, mut velocities) = (memory(), memory());
+        for (samples, mean) in self.samples.chunks(count).zip(means) {
+            let position = |sample: &Sample| sample.known[0] + mean + amplitude * sample.wave[0];
+            let velocity = |sample: &Sample| sample.known[1] - amplitude * speed * sample.wave[1];
+            positions.extend(samples.iter().map(position));
+            velocities.extend(samples.iter().map(velocity));
+        }
         let forces = self.forces(&positions, &velocities);
         let of_phase = |(samples, forces): (&[Sample], &[f64])| {
             let mut sums = Sums::default();
+            let part = 1.0 / count as f64;
             for (Sample { wave: [cosine, sine], .. }, force) in samples.iter().zip(forces) {
-                let force = force / count as f64;
+                let force = part * force;
                 sums.mean += force;
                 sums.cosine += force * cosine;
                 sums.sine += force * sine;

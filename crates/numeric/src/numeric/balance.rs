@@ -421,6 +421,9 @@ impl HarmonicBalance {
         located: LocatedForces,
         mut force: impl FnMut(f64, &[[f64; 2]], &mut ForceSample),
     ) -> Option<Linearised> {
+        if omega.is_nan() || omega <= 0.0 {
+            return None;
+        }
         let (n, width) = (self.coordinates, self.width());
         let mut forces = SampledForces::zeros(self);
         let mut sample = ForceSample::zeros(n);

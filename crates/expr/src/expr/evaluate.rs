@@ -245,6 +245,34 @@ impl CompiledList {
             *value = scratch[*result];
         }
     }
+
+    /// The list of some of the results, by their index, where the arguments from one on have these values,
+    /// whatever a call gives them: what follows from them alone is computed once. Every value of a call is
+    /// bit for bit that of this list.
+    ///
+    /// ```
+    /// # use lindstedt_expr as lindstedt;
+    /// use lindstedt::expr::{CompiledList, parse_expression};
+    /// let texts = ["exp(x)", "x/sqrt(k) + sin(k)"].map(|text| parse_expression(text).expect("a text"));
+    /// let list = CompiledList::new(&texts, &["x".into(), "k".into()])?;
+    /// let (mut both, mut second) = ([0.0; 2], [0.0]);
+    /// list.call(&[3.0, 0.3], &mut vec![], &mut both);
+    /// list.specialised(|index| index == 1, 1, &[0.3]).call(&[3.0, f64::NAN], &mut vec![], &mut second);
+    /// assert_eq!(both[1], second[0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn specialised(
+        &self,
+        is_kept: impl Fn(usize) -> bool,
+        first: usize,
+        values: &[f64],
+    ) -> Self {
+        let kept = self.results.iter().enumerate().filter(|(index, _)| is_kept(*index));
+        let kept: Vec<usize> = kept.map(|(_, place)| *place).collect();
+        let (list, results) = self.list.specialised(&kept, first, values);
+        Self { list, results }
+    }
 }
 
 impl InstructionList {
@@ -277,19 +305,105 @@ impl InstructionList {
         values[..arguments.len()].copy_from_slice(arguments);
         values[arguments.len()..constants_end].copy_from_slice(&self.constants);
         for (offset, instruction) in self.instructions.iter().enumerate() {
-            values[constants_end + offset] = match *instruction {
-                Instruction::Add(a, b) => values[a] + values[b],
-                Instruction::Subtract(a, b) => values[a] - values[b],
-                Instruction::Multiply(a, b) => values[a] * values[b],
-                Instruction::Divide(a, b) => values[a] / values[b],
-                Instruction::Gate(a, b) => gate(values[a], values[b]),
-                Instruction::IntegerPower(a, exponent) => integer_power(values[a], exponent),
-                Instruction::SquareRoot(a) => values[a].sqrt(),
-                Instruction::OddRoot(a, b, odd) => odd_root(values[a], values[b], odd),
-                Instruction::Power(a, exponent) => values[a].powf(values[exponent]),
-                Instruction::Unary(function, a) => function(values[a]),
-                Instruction::Binary(function, a, b) => function(values[a], values[b]),
-            };
+            values[constants_end + offset] = instruction.value(values);
+        }
+    }
+
+    /// The operations that these results still need where the arguments from one on have these values, and
+    /// the new places of the results.
+    fn specialised(&self, results: &[usize], first: usize, given: &[f64]) -> (Self, Vec<usize>) {
+        let size = self.size();
+        let begin = self.argument_count + self.constants.len();
+        let operations = || (begin..size).zip(&self.instructions);
+        let mut known: Vec<Option<f64>> = vec![None; size];
+        let mut values = vec![0.0; size];
+        let own = (self.argument_count..).zip(&self.constants);
+        for (place, value) in (first..self.argument_count).zip(given).chain(own) {
+            (values[place], known[place]) = (*value, Some(*value));
+        }
+        for (place, instruction) in operations() {
+            let [a, b] = instruction.operands().map(|operand| known[operand]);
+            let is_closed = matches!(instruction, Instruction::Gate(..)) && a == Some(0.0);
+            if a.is_some() && (b.is_some() || is_closed) {
+                values[place] = instruction.value(&values);
+                known[place] = Some(values[place]);
+            }
+        }
+        let mut is_read = vec![false; size];
+        results.iter().for_each(|place| is_read[*place] = true);
+        for (place, instruction) in operations().rev() {
+            if is_read[place] && known[place].is_none() {
+                instruction.operands().into_iter().for_each(|operand| is_read[operand] = true);
+            }
+        }
+        let mut places: Vec<usize> = (0..size).collect();
+        let mut constants = Vec::new();
+        for place in (0..size).filter(|place| is_read[*place]) {
+            if let Some(value) = known[place] {
+                places[place] = self.argument_count + constants.len();
+                constants.push(value);
+            }
+        }
+        let mut instructions = Vec::new();
+        for (place, instruction) in operations() {
+            if is_read[place] && known[place].is_none() {
+                places[place] = self.argument_count + constants.len() + instructions.len();
+                instructions.push(instruction.at(|operand| places[operand]));
+            }
+        }
+        let results = results.iter().map(|place| places[*place]).collect();
+        (Self { argument_count: self.argument_count, constants, instructions }, results)
+    }
+}
+
+impl Instruction {
+    /// The result where the operands have these values.
+    #[inline(always)]
+    fn value(&self, values: &[f64]) -> f64 {
+        match *self {
+            Self::Add(a, b) => values[a] + values[b],
+            Self::Subtract(a, b) => values[a] - values[b],
+            Self::Multiply(a, b) => values[a] * values[b],
+            Self::Divide(a, b) => values[a] / values[b],
+            Self::Gate(a, b) => gate(values[a], values[b]),
+            Self::IntegerPower(a, exponent) => integer_power(values[a], exponent),
+            Self::SquareRoot(a) => values[a].sqrt(),
+            Self::OddRoot(a, b, odd) => odd_root(values[a], values[b], odd),
+            Self::Power(a, exponent) => values[a].powf(values[exponent]),
+            Self::Unary(function, a) => function(values[a]),
+            Self::Binary(function, a, b) => function(values[a], values[b]),
+        }
+    }
+
+    /// The places of both operands, twice the same of a single one.
+    fn operands(&self) -> [usize; 2] {
+        match *self {
+            Self::Add(a, b)
+            | Self::Subtract(a, b)
+            | Self::Multiply(a, b)
+            | Self::Divide(a, b)
+            | Self::Gate(a, b)
+            | Self::OddRoot(a, b, _)
+            | Self::Power(a, b)
+            | Self::Binary(_, a, b) => [a, b],
+            Self::IntegerPower(a, _) | Self::SquareRoot(a) | Self::Unary(_, a) => [a, a],
+        }
+    }
+
+    /// This operation with its operands at other places.
+    fn at(&self, place: impl Fn(usize) -> usize) -> Self {
+        match *self {
+            Self::Add(a, b) => Self::Add(place(a), place(b)),
+            Self::Subtract(a, b) => Self::Subtract(place(a), place(b)),
+            Self::Multiply(a, b) => Self::Multiply(place(a), place(b)),
+            Self::Divide(a, b) => Self::Divide(place(a), place(b)),
+            Self::Gate(a, b) => Self::Gate(place(a), place(b)),
+            Self::IntegerPower(a, exponent) => Self::IntegerPower(place(a), exponent),
+            Self::SquareRoot(a) => Self::SquareRoot(place(a)),
+            Self::OddRoot(a, b, odd) => Self::OddRoot(place(a), place(b), odd),
+            Self::Power(a, b) => Self::Power(place(a), place(b)),
+            Self::Unary(function, a) => Self::Unary(function, place(a)),
+            Self::Binary(function, a, b) => Self::Binary(function, place(a), place(b)),
         }
     }
 }

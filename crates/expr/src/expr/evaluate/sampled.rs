@@ -61,9 +61,9 @@ impl<const N: usize> SampledFunctions<N> {
             sampled.add_fixed(&vec![*constant; places]);
         }
         for (index, instruction) in list.instructions.iter().enumerate() {
-            let operands = instruction.operands().into_iter().flatten();
-            let mut columns = operands.map(|place| sampled.columns[place]);
-            match columns.all(|column| matches!(column, Column::Fixed(_))) {
+            let operands = instruction.operands();
+            let columns = operands.map(|place| sampled.columns[place]);
+            match columns.iter().all(|column| matches!(column, Column::Fixed(_))) {
                 true => {
                     let mut values = vec![0.0; places];
                     instruction.run_columns(|place| sampled.values_at(place, &[]), &mut values);
@@ -127,21 +127,6 @@ impl<const N: usize> SampledFunctions<N> {
 }
 
 impl Instruction {
-    /// The places of the operands.
-    fn operands(&self) -> [Option<usize>; 2] {
-        match *self {
-            Self::Add(a, b)
-            | Self::Subtract(a, b)
-            | Self::Multiply(a, b)
-            | Self::Divide(a, b)
-            | Self::Gate(a, b)
-            | Self::OddRoot(a, b, _)
-            | Self::Power(a, b)
-            | Self::Binary(_, a, b) => [Some(a), Some(b)],
-            Self::IntegerPower(a, _) | Self::SquareRoot(a) | Self::Unary(_, a) => [Some(a), None],
-        }
-    }
-
     /// Computes the result at all places, from the columns of the operands.
     fn run_columns<'a>(&self, column: impl Fn(usize) -> &'a [f64], results: &mut [f64]) {
         let of_one = |results: &mut [f64], a: usize, function: &dyn Fn(f64) -> f64| {

@@ -292,8 +292,8 @@ pub(in crate::impact) fn follow(
         absolute_tolerance: settings.absolute_tolerance,
         maximum_steps: settings.maximum_steps,
         maximum_step,
-        stiff: false,
         interrupt: settings.interrupt,
+        ..ode::IntegrationOptions::default()
     };
     let first_region = mode_and_sticking(first).0.region;
     let begin = ode::State {

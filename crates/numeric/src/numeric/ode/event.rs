@@ -7,6 +7,7 @@
 //! samples, the grazing of a barrier, are found as well. An event function should vary on the scale
 //! of the motion, not faster.
 
+use std::cell::RefCell;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
@@ -141,7 +142,12 @@ impl SignTracker {
         event: &Event<S>,
         moved: Option<&S>,
     ) -> Result<Vec<(f64, bool)>, NotFinite> {
-        let value_at = |fraction: f64| (event.function)(&step.first_at(fraction, event.reads));
+        let point = RefCell::new(step.start.clone());
+        let value_at = |fraction: f64| {
+            let point = &mut *point.borrow_mut();
+            step.set_first_at(fraction, event.reads, point);
+            (event.function)(point)
+        };
         let first = moved.is_some();
         let mut samples = Vec::with_capacity(SAMPLES.len() + NEAR_START);
         for fraction in sample_fractions(first) {

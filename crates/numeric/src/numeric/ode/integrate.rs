@@ -1,9 +1,9 @@
 //! The run itself: it takes a step, looks for events in the step, and restarts where the right side
 //! switches.
 //!
-//! Only the steps come from the crate `differential-equations`. Its version 0.7.0 accepts a step
-//! whose error estimate is not a number, so every step is checked here and repeated with a smaller
-//! length; its event handling misses two crossings in one step, so ours is used.
+//! A step whose rates are not finite is repeated with a smaller length. Of the crate
+//! `differential-equations` only Radau's steps are used, and the coefficients of Verner's: its event
+//! handling misses two crossings in one step.
 
 use std::cell::Cell;
 
@@ -31,6 +31,8 @@ pub struct IntegrationOptions {
     /// Steps, rejected ones included, after which the run gives up. Each accepted step keeps about
     /// 200 bytes.
     pub maximum_steps: usize,
+    /// First step, in units of time; 0: chosen by the rates.
+    pub first_step: f64,
     /// Longest step, in units of time: infinity, unless a right side or an event varies faster than
     /// the motion.
     pub maximum_step: f64,
@@ -55,6 +57,7 @@ impl IntegrationOptions {
             relative_tolerance: tolerance,
             absolute_tolerance: tolerance,
             maximum_steps: 200_000,
+            first_step: 0.0,
             maximum_step: f64::INFINITY,
             stiff: false,
             interrupt: Interrupt::default(),
@@ -295,6 +298,54 @@ pub fn end_values<Y: StateVector>(
     end_time: f64,
     options: &IntegrationOptions,
 ) -> Option<Y> {
+    end_or_event(rates, 0, start, end_time, &[], options).map(|end| end.point.y)
+}
+
+/// The end of a run whose path is not kept.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunEnd<Y> {
+    /// The time and the values.
+    pub point: Point<Y>,
+    /// The index of the event that ended it; `None` at the end time.
+    pub event: Option<usize>,
+    /// The step that would be tried next.
+    pub next_step: f64,
+}
+
+/// The end time, or the first of these events, of first-order equations whose path is not kept; each event
+/// ends the run, whatever its action. `None` if neither is reached.
+///
+/// The events read the first `inside` values alone, and so do the rates of these: between the ends of a
+/// step only they are known, and `rates` is called with them alone, for their own rates. A step up to an
+/// event is taken once more for the other values.
+///
+/// ```
+/// # use lindstedt_numeric as lindstedt;
+/// use lindstedt::numeric::ode::{Action, Event, IntegrationOptions, Point, end_or_event};
+///
+/// // x'' = -x with the variation z of x by the velocity at the start, up to the zero of x at pi.
+/// let swing = |_t: f64, y: &Vec<f64>, rates: &mut Vec<f64>| {
+///     (rates[0], rates[1]) = (y[1], -y[0]);
+///     if y.len() > 2 {
+///         (rates[2], rates[3]) = (y[3], -y[2]);
+///     }
+/// };
+/// let start = Point { t: 0.0, y: vec![0.0, 1.0, 0.0, 1.0] };
+/// let zero = Event::new(|point: &Point<Vec<f64>>| point.y[0], Action::Stop).falling();
+/// let options = IntegrationOptions::with_tolerance(1e-12);
+/// let end = end_or_event(swing, 2, start, 9.0, &[zero], &options).ok_or("no end")?;
+/// assert!(end.event == Some(0) && (end.point.t - std::f64::consts::PI).abs() < 1e-10);
+/// assert!(end.point.y[2].abs() < 1e-10 && (end.point.y[3] + 1.0).abs() < 1e-10);
+/// # Ok::<(), &str>(())
+/// ```
+pub fn end_or_event<'a, Y: StateVector>(
+    rates: impl Fn(f64, &Y, &mut Y) + 'a,
+    inside: usize,
+    start: Point<Y>,
+    end_time: f64,
+    events: &[Event<'a, Point<Y>>],
+    options: &IntegrationOptions,
+) -> Option<RunEnd<Y>> {
     check(&start, end_time, options).ok()?;
     let evaluations = Cell::new(0);
     let equations = CountedRates::<Point<Y>> {
@@ -303,8 +354,10 @@ pub fn end_values<Y: StateVector>(
         non_finite: Cell::new(false),
     };
     let looks = StepLimits::NOWHERE;
-    let leg = Leg { equations, phase: 0, events: &[], end_time, looks, options };
-    leg.end_values(&explicit::<Y>(), start)
+    let leg = Leg { equations, phase: 0, events, end_time, looks, inside, options };
+    let (point, event, next_step) =
+        leg.end_or_event(&explicit::<Y>(), start, options.first_step)?;
+    Some(RunEnd { point, event, next_step })
 }
 
 /// Conditions, besides the error, that limit a step.
@@ -384,7 +437,7 @@ fn run<S: Sample>(
         let equations =
             CountedRates::<S> { rates, evaluations: &evaluations, non_finite: Cell::new(false) };
         let begin = trajectory.end.time();
-        let leg = Leg { equations, phase, events, end_time, looks, options };
+        let leg = Leg { equations, phase, events, end_time, looks, inside: usize::MAX, options };
         let end = match options.stiff {
             false => leg.run(&explicit::<S::Values>(), &mut trajectory, &mut attempts),
             true => leg.run(&implicit::<S>(), &mut trajectory, &mut attempts),
@@ -464,6 +517,8 @@ struct Leg<'r, 'a, S: Sample> {
     events: &'r [Event<'a, S>],
     end_time: f64,
     looks: StepLimits<'r, S>,
+    /// The number of values, from the first on, that are known between the ends of a step.
+    inside: usize,
     options: &'r IntegrationOptions,
 }
 
@@ -494,7 +549,7 @@ impl<S: Sample> Leg<'_, '_, S> {
         attempts: &mut usize,
     ) -> LegEnd<S> {
         let mut state = trajectory.end.clone();
-        let Some(mut solver) = self.solver(scheme, &state, 0.0) else {
+        let Some(mut solver) = self.solver(scheme, &state, self.options.first_step) else {
             return LegEnd::Stopped(self.failure(state.time()));
         };
         let mut watches = vec![SignTracker::default(); self.events.len()];
@@ -595,15 +650,19 @@ impl<S: Sample> Leg<'_, '_, S> {
         }
     }
 
-    /// Returns the values at the end time, without events and limits; `None` if it is not reached.
-    fn end_values<M: OrdinaryNumericalMethod<f64, S::Values>>(
+    /// Returns the values at the end time or the first event, the event, and the next step, without
+    /// limits of a step; `None` if neither is reached.
+    fn end_or_event<M: OrdinaryNumericalMethod<f64, S::Values>>(
         &self,
         scheme: &Scheme<M, S::Values>,
         start: S,
-    ) -> Option<S::Values> {
-        let mut solver = self.solver(scheme, &start, 0.0)?;
-        let (mut time, mut values) = (start.time(), start.values());
+        first_step: f64,
+    ) -> Option<(S, Option<usize>, f64)> {
+        let mut solver = self.solver(scheme, &start, first_step)?;
+        let mut watches = vec![SignTracker::default(); self.events.len()];
+        let (mut state, mut first) = (start, true);
         for attempts in 0.. {
+            let time = state.time();
             let remaining = self.end_time - time;
             if remaining <= 2.0 * f64::EPSILON * self.end_time.abs() {
                 break;
@@ -620,24 +679,53 @@ impl<S: Sample> Leg<'_, '_, S> {
                 if time + shorter <= time {
                     return None;
                 }
-                solver = self.solver(scheme, &S::new(time, values.clone()), shorter)?;
+                solver = self.solver(scheme, &state, shorter)?;
                 continue;
             }
-            let is_stuck = || time + solver.h() <= time;
-            match outcome {
-                Err(_) => return None,
-                Ok(_) if !matches!(solver.status(), Status::RejectedStep) => {
-                    time = solver.t();
-                    values = solver.y().clone();
-                    if !values.as_ref().iter().all(|value| value.is_finite()) {
-                        return None;
-                    }
+            outcome.ok()?;
+            if matches!(solver.status(), Status::RejectedStep) {
+                if time + solver.h() <= time {
+                    return None;
                 }
-                Ok(_) if is_stuck() => return None,
-                Ok(_) => {}
+                continue;
             }
+            let next = S::new(solver.t(), solver.y().clone());
+            if !next.is_finite() {
+                return None;
+            }
+            if !self.events.is_empty() {
+                let begin = S::new(time, state.values().leading(self.inside));
+                let (step, _) = self.accepted(scheme, &mut solver, &begin)?;
+                let moved = first.then(|| self.extrapolated(&begin, step.length));
+                let met = self.located_events(&step, &mut watches, moved.as_ref())?;
+                if let Some((happening, event, _)) = met.into_iter().next() {
+                    let end = self.whole_at(scheme, state, &happening)?;
+                    return Some((end, Some(event), solver.h()));
+                }
+            }
+            (state, first) = (next, false);
         }
-        Some(values)
+        Some((S::new(self.end_time, state.values()), None, solver.h()))
+    }
+
+    /// Returns all values where the first ones are known, within the step that begins in a state.
+    fn whole_at<M: OrdinaryNumericalMethod<f64, S::Values>>(
+        &self,
+        scheme: &Scheme<M, S::Values>,
+        state: S,
+        known: &S,
+    ) -> Option<S> {
+        let first = known.values();
+        let length = known.time() - state.time();
+        let mut values = state.values();
+        if length > 0.0 && values.as_ref().len() > first.as_ref().len() {
+            let CountedRates { rates, evaluations, .. } = self.equations;
+            let equations = CountedRates { rates, evaluations, non_finite: Cell::new(false) };
+            let step = Leg { equations, events: &[], end_time: known.time(), inside: 0, ..*self };
+            values = step.end_or_event(scheme, state, length)?.0.values();
+        }
+        values.as_mut()[..first.as_ref().len()].copy_from_slice(first.as_ref());
+        Some(S::new(known.time(), values))
     }
 
     /// Returns the time left until the next critical time that is farther away than rounding.
@@ -748,7 +836,7 @@ impl<S: Sample> Leg<'_, '_, S> {
         let longest = self.options.maximum_step.min(remaining);
         if longest <= 0.0 {
             // The end is reached: no step of this solver will be taken.
-            return Some((scheme.fresh)(self.options, 0.0, f64::INFINITY));
+            return Some((scheme.fresh)(self.options, [0.0, f64::INFINITY], self.inside));
         }
         self.equations.non_finite.set(false);
         self.equations.diff(time, &values, &mut values.clone());
@@ -756,7 +844,8 @@ impl<S: Sample> Leg<'_, '_, S> {
             return None;
         }
         for step in [first_step, 1e-6 * longest] {
-            let mut solver = (scheme.fresh)(self.options, step.min(longest), longest);
+            let steps = [step.min(longest), longest];
+            let mut solver = (scheme.fresh)(self.options, steps, self.inside);
             // The trial steps by which a first step is chosen may leave the domain: the second pass
             // prescribes a short one.
             if solver.init(&self.equations, time, self.end_time, &values).is_ok()
@@ -798,9 +887,14 @@ impl<S: Sample> Leg<'_, '_, S> {
     ) -> Option<(TrajectoryStep<S>, S)> {
         let (from, to) = (solver.t_prev(), solver.t());
         let length = to - from;
-        let mut values: [S::Values; TERMS] = std::array::from_fn(|_| start.values());
-        for (values, fraction) in values.iter_mut().zip(FRACTIONS.iter()) {
-            *values = (scheme.inside)(solver, (from + fraction * length).min(to))?;
+        let mut is_known = true;
+        let values: [S::Values; TERMS] = FRACTIONS.map(|fraction| {
+            let found = (scheme.inside)(solver, (from + fraction * length).min(to));
+            is_known &= found.is_some();
+            found.unwrap_or_else(|| start.values())
+        });
+        if !is_known {
+            return None;
         }
         let next = S::new(to, solver.y().clone());
         let finite = |values: &S::Values| values.as_ref().iter().all(|value| value.is_finite());

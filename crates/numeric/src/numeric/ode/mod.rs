@@ -49,9 +49,12 @@ pub mod root;
 mod sample;
 mod scheme;
 mod trajectory;
+mod verner;
 
 pub use event::{Action, Direction, Event};
-pub use integrate::{AcceptedFraction, StepLimits, end_values, integrate_through};
+pub use integrate::{
+    AcceptedFraction, RunEnd, StepLimits, end_or_event, end_values, integrate_through,
+};
 pub use integrate::{
     IntegrationError, IntegrationOptions, IntegrationPhase, integrate, integrate_first_order,
     integrate_phases,

@@ -10,11 +10,22 @@ use super::State;
 pub trait StateVector:
     differential_equations::traits::State<f64> + AsRef<[f64]> + AsMut<[f64]>
 {
+    /// The first values, so many of them; all of an array.
+    #[must_use]
+    fn leading(&self, count: usize) -> Self;
 }
 
-impl<const N: usize> StateVector for [f64; N] {}
+impl<const N: usize> StateVector for [f64; N] {
+    fn leading(&self, _count: usize) -> Self {
+        *self
+    }
+}
 
-impl StateVector for Vec<f64> {}
+impl StateVector for Vec<f64> {
+    fn leading(&self, count: usize) -> Self {
+        self[..count.min(self.len())].to_vec()
+    }
+}
 
 /// A point of a motion.
 pub trait Sample: Clone + Debug {
@@ -29,6 +40,12 @@ pub trait Sample: Clone + Debug {
 
     /// The values at that time.
     fn values(&self) -> Self::Values;
+
+    /// The value of this index.
+    fn value(&self, index: usize) -> f64;
+
+    /// Sets the time and the first values, so many of them, by their index.
+    fn set(&mut self, t: f64, count: usize, value: impl Fn(usize) -> f64);
 
     /// The values at `t` within a step of the implicit method, from those at its ends, where that
     /// is better than the method's own interpolant.
@@ -69,6 +86,17 @@ impl<Y: StateVector> Sample for Point<Y> {
     fn values(&self) -> Y {
         self.y.clone()
     }
+
+    fn value(&self, index: usize) -> f64 {
+        self.y.as_ref()[index]
+    }
+
+    fn set(&mut self, t: f64, count: usize, value: impl Fn(usize) -> f64) {
+        self.t = t;
+        for (index, own) in self.y.as_mut().iter_mut().take(count).enumerate() {
+            *own = value(index);
+        }
+    }
 }
 
 impl Sample for State {
@@ -84,6 +112,15 @@ impl Sample for State {
 
     fn values(&self) -> [f64; 2] {
         [self.x, self.v]
+    }
+
+    fn value(&self, index: usize) -> f64 {
+        if index == 0 { self.x } else { self.v }
+    }
+
+    fn set(&mut self, t: f64, count: usize, value: impl Fn(usize) -> f64) {
+        let [x, v] = [0, 1].map(|index| (index < count).then(|| value(index)));
+        *self = Self { t, x: x.unwrap_or(self.x), v: v.unwrap_or(self.v) };
     }
 
     /// The cubic Hermite interpolant of displacement and velocity at both ends of a step. It leaves

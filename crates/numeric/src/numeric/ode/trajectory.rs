@@ -234,27 +234,22 @@ impl<S: Sample> TrajectoryStep<S> {
 
     /// The values at the fraction s of the step.
     pub(super) fn values_at(&self, fraction: f64) -> S::Values {
-        self.first_values_at(fraction, usize::MAX)
-    }
-
-    /// The first `count` values at the fraction s of the step, the others as at its start.
-    fn first_values_at(&self, fraction: f64, count: usize) -> S::Values {
-        let mut values = self.start.values();
-        for (component, value) in values.as_mut().iter_mut().take(count).enumerate() {
-            *value += fraction * clenshaw(|term| self.quotient[term].as_ref()[component], fraction);
-        }
-        values
+        self.state_at(fraction).values()
     }
 
     /// The state at the fraction s of the step.
     pub(super) fn state_at(&self, fraction: f64) -> S {
-        self.first_at(fraction, usize::MAX)
+        let mut state = self.start.clone();
+        self.set_first_at(fraction, usize::MAX, &mut state);
+        state
     }
 
-    /// The state at the fraction s of the step in its first `count` values, the others as at its start.
-    pub(super) fn first_at(&self, fraction: f64, count: usize) -> S {
-        let time = self.start.time() + fraction * self.length;
-        S::new(time, self.first_values_at(fraction, count))
+    /// Sets the first `count` values of a state, and its time, to those at the fraction s of the step.
+    pub(super) fn set_first_at(&self, fraction: f64, count: usize, state: &mut S) {
+        state.set(self.start.time() + fraction * self.length, count, |component| {
+            let rise = clenshaw(|term| self.quotient[term].as_ref()[component], fraction);
+            self.start.value(component) + fraction * rise
+        });
     }
 }
 

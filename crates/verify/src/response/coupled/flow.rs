@@ -9,18 +9,19 @@
 //! Where the right sides jump, the motion is followed from event to event by `sliding`.
 //!
 //! In: the right sides as expressions. Out: the state after a time, its derivatives, and between
-//! which values each state was on the way. A step costs 21 evaluations of the right sides and of
-//! those derivatives that are not zero, s of them, and 21 s n products for the variations.
+//! which values each state was on the way. A step costs 16 evaluations of the right sides and of
+//! those derivatives that are not zero, s of them, and 16 s n products for the variations.
 
 use std::cell::{Cell, RefCell};
 
 use nalgebra::{DMatrix, DVector};
 
+use super::scaled_rates::ScaledRates;
 use super::sliding::{self, SlidingRun, SlidingStop};
-use super::surfaces::{FlowEvent, JumpSurfaces};
-use crate::expr::{CompiledList, Expr};
+use super::surfaces::{FlowEvent, JumpSurfaces, Table};
+use crate::expr::Expr;
 use crate::interrupt::Interrupt;
-use crate::numeric::ode::{IntegrationOptions, Point, end_values};
+use crate::numeric::ode::{IntegrationOptions, Point, end_or_event, end_values};
 use crate::response::ResponseError;
 use crate::symbol::Symbol;
 
@@ -41,13 +42,10 @@ pub(super) struct Flow {
     pub(super) states: usize,
     /// Whether no corner occurs, such as `abs` or `max`.
     smooth: bool,
-    rates: CompiledList,
-    /// The rates, then the derivatives that are not zero: by states, and by the parameter.
-    varied: CompiledList,
-    /// Row and column of each derivative by a state.
-    slopes: Vec<(usize, usize)>,
-    /// Row of each derivative by the parameter.
-    by_parameter: Vec<usize>,
+    /// f.
+    rates: Table,
+    /// f, f_y, f_p, a row for each state.
+    varied: Table,
     /// The surfaces across which the right sides jump.
     jumps: Option<JumpSurfaces>,
     /// The request to stop, after which no motion is followed to its end.
@@ -138,33 +136,24 @@ impl Flow {
         events: &[FlowEvent],
     ) -> Result<Self, ResponseError> {
         let arguments: Vec<Symbol> = states.iter().copied().chain([time, parameter]).collect();
-        let (mut slopes, mut by_parameter) = (Vec::new(), Vec::new());
-        let mut varied = right.to_vec();
-        for (row, rate) in right.iter().enumerate() {
-            for (column, state) in states.iter().enumerate() {
-                let slope = match rate.contains(*state) {
-                    true => rate.differentiate(*state)?,
-                    false => continue,
-                };
-                if !slope.is_zero() {
-                    slopes.push((row, column));
-                    varied.push(slope);
-                }
+        let row = |rate: &Expr| -> Result<Vec<Expr>, ResponseError> {
+            let slope = |name: &Symbol| match rate.contains(*name) {
+                true => rate.differentiate(*name),
+                false => Ok(Expr::zero()),
+            };
+            let mut row = vec![rate.clone()];
+            for name in states.iter().chain([&parameter]) {
+                row.push(slope(name)?);
             }
-        }
-        for (row, rate) in right.iter().enumerate() {
-            if rate.contains(parameter) {
-                by_parameter.push(row);
-                varied.push(rate.differentiate(parameter)?);
-            }
-        }
+            Ok(row)
+        };
+        let varied: Vec<Vec<Expr>> = right.iter().map(row).collect::<Result<_, _>>()?;
+        let rates: Vec<Vec<Expr>> = right.iter().map(|rate| vec![rate.clone()]).collect();
         Ok(Self {
             states: states.len(),
             smooth: !right.iter().any(Expr::contains_corner),
-            rates: CompiledList::new(right, &arguments)?,
-            varied: CompiledList::new(&varied, &arguments)?,
-            slopes,
-            by_parameter,
+            rates: Table::new(&rates, &arguments)?,
+            varied: Table::new(&varied, &arguments)?,
             jumps: JumpSurfaces::new(states, time, right, parameter, events)?,
             interrupt: Interrupt::default(),
             stopped: Cell::new(None),
@@ -319,7 +308,7 @@ impl Flow {
             let found = sliding::linearised(jumps, state, time, parameter);
             return found.map_or_else(|| rates.add_scalar(f64::NAN), |(rates, _)| rates);
         }
-        self.rates.call(&arguments, &mut vec![], rates.as_mut_slice());
+        self.rates.visit(&arguments, |(row, _), rate| rates[row] = rate);
         rates
     }
 
@@ -339,23 +328,12 @@ impl Flow {
                 by_parameter: slopes.column(n).into_owned(),
             };
         }
-        let count = self.states + self.slopes.len() + self.by_parameter.len();
-        let mut values = vec![0.0; count];
-        self.varied.call(&arguments, &mut vec![], &mut values);
-        let (rates, rest) = values.split_at(self.states);
-        let (slopes, own) = rest.split_at(self.slopes.len());
-        let mut found = LinearisedRates {
-            rates: DVector::from_column_slice(rates),
-            by_state: DMatrix::zeros(self.states, self.states),
-            by_parameter: DVector::zeros(self.states),
-        };
-        for (place, slope) in self.slopes.iter().zip(slopes) {
-            found.by_state[*place] = *slope;
+        let all = self.varied.at(&arguments);
+        LinearisedRates {
+            rates: all.column(0).into_owned(),
+            by_state: all.columns(1, n).into_owned(),
+            by_parameter: all.column(n + 1).into_owned(),
         }
-        for (row, slope) in self.by_parameter.iter().zip(own) {
-            found.by_parameter[*row] = *slope;
-        }
-        found
     }
 
     /// The evaluations of the right sides so far, each counted as often as there are motions and variations.
@@ -391,18 +369,13 @@ impl Flow {
             let run = self.sliding(jumps, start, [from, to], parameter, sizes, None)?;
             return Some(run.values.iter().zip(sizes).map(|(value, size)| value * size).collect());
         }
-        let memory = RefCell::new((vec![0.0; n + 2], Vec::new()));
+        let own = ScaledRates::new(&self.rates, None, &[parameter], sizes);
+        let memory = RefCell::new(vec![0.0; n + 2]);
         let rates = |time: f64, scaled: &Vec<f64>, rates: &mut Vec<f64>| {
             self.count(1);
-            let (arguments, scratch) = &mut *memory.borrow_mut();
-            for i in 0..n {
-                arguments[i] = scaled[i] * sizes[i];
-            }
-            (arguments[n], arguments[n + 1]) = (time, parameter);
-            self.rates.call(arguments, scratch, rates);
-            for i in 0..n {
-                rates[i] /= sizes[i];
-            }
+            let arguments = &mut *memory.borrow_mut();
+            set_states(scaled, sizes, time, arguments);
+            own.write(arguments, scaled, rates);
         };
         let scaled = start.iter().zip(sizes).map(|(value, size)| value / size).collect();
         let options = self.options(to - from, self.smooth);
@@ -436,35 +409,21 @@ impl Flow {
         }
         // A row of the variations of each state, by all states and by the parameter.
         let width = n + 1;
-        let count = n + self.slopes.len() + self.by_parameter.len();
-        let memory = RefCell::new((vec![0.0; n + 2], Vec::new(), vec![0.0; count]));
+        let varied = (&self.varied, UNIT_OF_VARIATIONS);
+        let own = ScaledRates::new(&self.rates, Some(varied), &[parameter], sizes);
+        let memory = RefCell::new(vec![0.0; n + 2]);
         let bounds = RefCell::new((start.to_vec(), start.to_vec()));
+        // Within a step the states alone are asked for, whose bounds these are.
         let rates = |time: f64, scaled: &Vec<f64>, rates: &mut Vec<f64>| {
-            self.count(1 + width);
-            let (arguments, scratch, values) = &mut *memory.borrow_mut();
+            self.count(if own.are_alone(scaled.len()) { 1 } else { 1 + width });
+            let arguments = &mut *memory.borrow_mut();
             let (low, high) = &mut *bounds.borrow_mut();
-            for i in 0..n {
-                let state = scaled[i] * sizes[i];
-                arguments[i] = state;
-                low[i] = low[i].min(state);
-                high[i] = high[i].max(state);
+            set_states(scaled, sizes, time, arguments);
+            for (state, (low, high)) in arguments.iter().zip(low.iter_mut().zip(high)) {
+                *low = low.min(*state);
+                *high = high.max(*state);
             }
-            (arguments[n], arguments[n + 1]) = (time, parameter);
-            self.varied.call(arguments, scratch, values);
-            rates.fill(0.0);
-            for i in 0..n {
-                rates[i] = values[i] / sizes[i];
-            }
-            for ((row, column), slope) in self.slopes.iter().zip(&values[n..]) {
-                let slope = slope * (sizes[*column] / sizes[*row]);
-                let (to, from) = (n + row * width, n + column * width);
-                for k in 0..width {
-                    rates[to + k] += slope * scaled[from + k];
-                }
-            }
-            for (row, slope) in self.by_parameter.iter().zip(&values[n + self.slopes.len()..]) {
-                rates[n + row * width + n] += UNIT_OF_VARIATIONS * slope / sizes[*row];
-            }
+            own.write(arguments, scaled, rates);
         };
         let mut begin: Vec<f64> =
             start.iter().zip(sizes).map(|(value, size)| value / size).collect();
@@ -473,10 +432,19 @@ impl Flow {
             begin[n + i * width + i] = UNIT_OF_VARIATIONS;
         }
         let options = self.options(to - from, self.smooth);
-        let end = end_values(rates, Point { t: from, y: begin }, to, &options)?;
+        let start = Point { t: from, y: begin };
+        let end = end_or_event(rates, n, start, to, &[], &options)?;
         let (low, high) = bounds.into_inner();
-        Some(image_of(n, &end, sizes, &low, &high))
+        Some(image_of(n, &end.point.y, sizes, &low, &high))
     }
+}
+
+/// Writes the states, which these values count in their sizes, and the time behind them.
+pub(super) fn set_states(values: &[f64], sizes: &[f64], time: f64, arguments: &mut [f64]) {
+    for (argument, (value, size)) in arguments.iter_mut().zip(values.iter().zip(sizes)) {
+        *argument = value * size;
+    }
+    arguments[sizes.len()] = time;
 }
 
 /// The motion with these values at its end, states and variations in the sizes of the states, and these

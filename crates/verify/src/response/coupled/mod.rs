@@ -11,7 +11,7 @@
 //! Every point is judged by the Taylor series of the equations as they were given, in time.
 //!
 //! - `problem`: the equations with numbers for all parameters but one, and the maps of a period.
-//! - `flow`: the motion with its variations by Runge-Kutta.
+//! - `flow`: the motion with its variations by Runge-Kutta; `scaled_rates`: its rates as they are integrated.
 //! - `state_jumps`: walls and events; `surfaces`: rates that jump, and where they do; `sliding`: the motion across jumps, with sticking.
 //! - `sections`: the phases at which periods with impacts or events begin.
 //! - `starts`: the motions from which branches of a driven system start; `guesses`: those of one
@@ -39,6 +39,7 @@ mod guesses;
 mod judged;
 mod modes;
 mod problem;
+mod scaled_rates;
 mod sections;
 mod sliding;
 mod starts;

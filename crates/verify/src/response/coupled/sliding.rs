@@ -25,10 +25,10 @@ use std::cell::{Cell, RefCell};
 
 use nalgebra::{DMatrix, DVector};
 
+use super::flow::set_states;
+use super::scaled_rates::ScaledRates;
 use super::surfaces::{EventMap, JumpSurfaces};
-use crate::numeric::ode::{
-    Action, Event, IntegrationOptions, Point, StopReason, integrate_first_order,
-};
+use crate::numeric::ode::{Action, Event, IntegrationOptions, Point, end_or_event};
 use held::{Held, set_shares};
 pub(super) use resting::onto_walls;
 
@@ -115,6 +115,8 @@ struct EventRun<'a> {
     unit: Option<f64>,
     time: f64,
     values: Vec<f64>,
+    /// The first step of the next leg; 0: chosen by the rates.
+    next_step: f64,
     /// The side of each surface, 1 or -1; of those on which it sticks a value in between.
     sides: Vec<f64>,
     /// The surfaces on which it sticks.
@@ -336,6 +338,7 @@ impl<'a> EventRun<'a> {
             unit,
             time,
             values,
+            next_step: 0.0,
             sides: vec![1.0; surfaces.arguments.len()],
             held: Held::default(),
             bounds: [start.to_vec(), start.to_vec()],
@@ -353,19 +356,10 @@ impl<'a> EventRun<'a> {
         }
     }
 
-    /// Writes the arguments of all functions at these values.
-    fn set_arguments(&self, time: f64, values: &[f64], arguments: &mut Vec<f64>) {
-        arguments.clear();
-        arguments.extend(values.iter().zip(self.sizes).map(|(value, size)| value * size));
-        arguments.extend([time, self.parameter]);
-        arguments.extend_from_slice(&self.sides);
-    }
-
-    /// The arguments where the motion is.
+    /// The arguments of all functions where the motion is.
     fn here(&self) -> Vec<f64> {
-        let mut arguments = Vec::new();
-        self.set_arguments(self.time, &self.values, &mut arguments);
-        arguments
+        let states = self.values.iter().zip(self.sizes).map(|(value, size)| value * size);
+        states.chain([self.time, self.parameter]).chain(self.sides.iter().copied()).collect()
     }
 
     /// u of a surface, in no size.
@@ -458,15 +452,28 @@ impl<'a> EventRun<'a> {
         let rest = run.resting_map();
         let rates_here = rest.map_or(&surfaces.rates, |rest| &rest.rates);
         let (first, duration) = (n + 2, to - from);
-        let memory = RefCell::new(Vec::new());
+        let memory = RefCell::new(run.here());
         let memory = &memory;
+        // Where nothing holds, the sides stay what they are.
+        let free = run.held.is_empty().then(|| {
+            let varied = rest.map_or(&surfaces.varied, |rest| &rest.varied);
+            let behind_time = &memory.borrow()[n + 1..];
+            ScaledRates::new(
+                rates_here,
+                run.unit.map(|unit| (varied, unit)),
+                behind_time,
+                run.sizes,
+            )
+        });
         // The instants at which the rates were asked for, each with the states.
         let seen = RefCell::new(Vec::new());
         let rates = |time: f64, values: &Vec<f64>, rates: &mut Vec<f64>| {
-            let columns = if run.unit.is_some() { n + 1 } else { 0 };
+            // Within a step the states alone are asked for.
+            let unit = run.unit.filter(|_| values.len() > n);
+            let columns = if unit.is_some() { n + 1 } else { 0 };
             run.evaluations.set(run.evaluations.get() + 1 + columns as u64);
             let arguments = &mut *memory.borrow_mut();
-            run.set_arguments(time, values, arguments);
+            set_states(values, run.sizes, time, arguments);
             if set_shares(surfaces, arguments, &run.held).is_none() {
                 rates.fill(f64::NAN);
                 return;
@@ -474,12 +481,13 @@ impl<'a> EventRun<'a> {
             let seen = &mut *seen.borrow_mut();
             seen.push(time);
             seen.extend_from_slice(&arguments[..n]);
-            match run.unit {
-                None => {
+            match (&free, unit) {
+                (Some(free), _) => free.write(arguments, values, rates),
+                (None, None) => {
                     rates.fill(0.0);
                     rates_here.visit(arguments, |(i, _), rate| rates[i] = rate / run.sizes[i]);
                 }
-                Some(unit) => run.varied_rates(arguments, values, rates, unit),
+                (None, Some(unit)) => run.varied_rates(arguments, values, rates, unit),
             }
         };
         let mut events: Vec<Event<Point<Vec<f64>>>> = Vec::new();
@@ -489,7 +497,7 @@ impl<'a> EventRun<'a> {
                 for side in [1.0, -1.0] {
                     let beyond = move |point: &Point<Vec<f64>>| {
                         let arguments = &mut *memory.borrow_mut();
-                        run.set_arguments(point.t, &point.y, arguments);
+                        set_states(&point.y, run.sizes, point.t, arguments);
                         match set_shares(surfaces, arguments, &run.held) {
                             Some(()) => side * arguments[first + index] - 1.0,
                             None => f64::NAN,
@@ -502,7 +510,7 @@ impl<'a> EventRun<'a> {
                 let (side, unseen) = (run.sides[index], UNSEEN * run.size_of_height(index));
                 let height = move |point: &Point<Vec<f64>>| {
                     let arguments = &mut *memory.borrow_mut();
-                    run.set_arguments(point.t, &point.y, arguments);
+                    set_states(&point.y, run.sizes, point.t, arguments);
                     side * surfaces.heights[index].call(arguments) + unseen
                 };
                 events.push(Event::new(height, Action::Stop).falling().reading(n));
@@ -512,7 +520,7 @@ impl<'a> EventRun<'a> {
         if let Some(rest) = rest {
             let acceleration = move |point: &Point<Vec<f64>>| {
                 let arguments = &mut *memory.borrow_mut();
-                run.set_arguments(point.t, &point.y, arguments);
+                set_states(&point.y, run.sizes, point.t, arguments);
                 rest.acceleration.call(arguments)
             };
             events.push(Event::new(acceleration, Action::Stop).rising().reading(n));
@@ -532,7 +540,7 @@ impl<'a> EventRun<'a> {
                     return -unseen;
                 }
                 let arguments = &mut *memory.borrow_mut();
-                run.set_arguments(point.t, &point.y, arguments);
+                set_states(&point.y, run.sizes, point.t, arguments);
                 let gap = event.gap.call(arguments);
                 let is_watched = (from + event.unwatched..=to - event.unwatched).contains(&point.t);
                 if is_watched { gap + unseen } else { gap.abs() + unseen }
@@ -541,18 +549,12 @@ impl<'a> EventRun<'a> {
             meetings.push(Meeting::Event(index));
         }
         let begin = Point { t: run.time, y: run.values.clone() };
-        let path = integrate_first_order(rates, begin, to, &events, options)
-            .map_err(|_| SlidingStop::NoValue)?;
-        if !path.is_complete() {
-            return Err(SlidingStop::NoValue);
-        }
-        let meeting = match path.stop_reason() {
-            StopReason::Event { event, .. } => Some(meetings[event]),
-            _ => None,
-        };
+        let options = IntegrationOptions { first_step: run.next_step, ..*options };
+        let found = end_or_event(rates, n, begin, to, &events, &options);
+        let end = found.ok_or(SlidingStop::NoValue)?;
+        let meeting = end.event.map(|event| meetings[event]);
         drop(events);
-        let end = path.end();
-        (self.time, self.values) = (end.t, end.y);
+        (self.time, self.values, self.next_step) = (end.point.t, end.point.y, end.next_step);
         self.widen_bounds(&seen.into_inner());
         Ok(meeting)
     }
@@ -573,7 +575,7 @@ impl<'a> EventRun<'a> {
         }
     }
 
-    /// The rates of states and variations.
+    /// The rates of states and variations where something holds.
     fn varied_rates(&self, arguments: &[f64], values: &[f64], rates: &mut [f64], unit: f64) {
         let n = self.surfaces.states;
         let width = n + 1;
@@ -584,21 +586,48 @@ impl<'a> EventRun<'a> {
                 true => rates[to + n] += unit * slope / self.sizes[i],
                 false => {
                     let slope = slope * (self.sizes[j] / self.sizes[i]);
-                    for k in 0..width {
-                        rates[to + k] += slope * values[n + j * width + k];
+                    let changes = &values[n + j * width..][..width];
+                    for (rate, change) in rates[to..to + width].iter_mut().zip(changes) {
+                        *rate += slope * change;
                     }
                 }
             }
         };
-        if self.held.is_empty() {
-            let mut own = vec![0.0; n];
-            let varied = self.resting_map().map_or(&self.surfaces.varied, |rest| &rest.varied);
-            varied.visit(arguments, |(i, j), value| match j {
-                0 => own[i] = value / self.sizes[i],
-                j if j <= width => add((i, j - 1), value),
+        if let Some([row, unknown]) = self.held.single() {
+            // The same sums as in the general case, without its matrices.
+            let mut memory = vec![0.0; 2 * n + (n + 1) * width];
+            let (own, rest) = memory.split_at_mut(n);
+            let (by_side, rest) = rest.split_at_mut(n);
+            let (change, slopes) = rest.split_at_mut(width);
+            self.surfaces.varied.visit(arguments, |(i, j), value| match j {
+                0 => own[i] = value,
+                j if j <= width => slopes[i * width + j - 1] = value,
+                j if j == 1 + width + unknown => by_side[i] = value,
                 _ => {}
             });
-            rates[..n].copy_from_slice(&own);
+            let mut pivot = 0.0;
+            self.surfaces.rises.visit(arguments, |place, value| {
+                if place == (row, 1 + unknown) {
+                    pivot = value;
+                }
+            });
+            self.surfaces.varied_rises.visit(arguments, |(i, j), value| {
+                if i == row {
+                    change[j] = -value;
+                }
+            });
+            change.iter_mut().for_each(|change| *change /= pivot);
+            for i in 0..n {
+                for j in 0..width {
+                    let slope = slopes[i * width + j] + by_side[i] * change[j];
+                    if slope != 0.0 {
+                        add((i, j), slope);
+                    }
+                }
+            }
+            for i in 0..n {
+                rates[i] = own[i] / self.sizes[i];
+            }
             return;
         }
         let Some((all, slopes)) = self.slopes(arguments) else {

@@ -34,7 +34,11 @@ pub(super) struct Table {
 }
 
 impl Table {
-    fn new(rows: &[Vec<Expr>], arguments: &[Symbol]) -> Result<Self, ResponseError> {
+    /// Compiles rows of equal length in these arguments.
+    ///
+    /// # Errors
+    /// [`ResponseError`] for another name.
+    pub(super) fn new(rows: &[Vec<Expr>], arguments: &[Symbol]) -> Result<Self, ResponseError> {
         let (mut places, mut entries) = (Vec::new(), Vec::new());
         for (i, row) in rows.iter().enumerate() {
             for (j, entry) in row.iter().enumerate().filter(|(_, entry)| !entry.is_zero()) {
@@ -54,6 +58,24 @@ impl Table {
         for (place, value) in self.places.iter().zip(values) {
             visit(*place, *value);
         }
+    }
+
+    /// The number of rows.
+    pub(super) fn rows(&self) -> usize {
+        self.shape.0
+    }
+
+    /// The places and the list of the entries in the first columns that are not zero throughout, where the
+    /// arguments from one on have these values.
+    pub(super) fn specialised(
+        &self,
+        columns: usize,
+        first: usize,
+        values: &[f64],
+    ) -> (Vec<(usize, usize)>, CompiledList) {
+        let is_kept = |index: usize| self.places[index].1 < columns;
+        let places = self.places.iter().copied().filter(|(_, column)| *column < columns).collect();
+        (places, self.entries.specialised(is_kept, first, values))
     }
 
     /// The matrix at these arguments.

@@ -30,6 +30,14 @@ impl Held {
         self.unknowns.is_empty()
     }
 
+    /// The normal and the unknown side of a single surface; `None` of several.
+    pub(super) fn single(&self) -> Option<[usize; 2]> {
+        match (self.rows.as_slice(), self.unknowns.as_slice()) {
+            ([row], [unknown]) if self.tied.is_empty() => Some([*row, *unknown]),
+            _ => None,
+        }
+    }
+
     pub(super) fn contains(&self, index: usize) -> bool {
         self.unknowns.contains(&index) || self.tied.iter().any(|(own, ..)| *own == index)
     }
@@ -79,6 +87,17 @@ pub(super) fn set_shares(
         return Some(());
     }
     let first = surfaces.states + 2;
+    if let Some([row, unknown]) = held.single() {
+        let (mut rise, mut by_side) = (0.0, 0.0);
+        arguments[first + unknown] = 0.0;
+        surfaces.rises.visit(arguments, |place, value| match place {
+            (i, 0) if i == row => rise = value,
+            (i, j) if i == row && j == 1 + unknown => by_side = value,
+            _ => {}
+        });
+        arguments[first + unknown] = -rise / by_side;
+        return (by_side != 0.0).then_some(());
+    }
     held.write(&vec![0.0; held.unknowns.len()], &mut arguments[first..]);
     let rises = surfaces.rises.at(arguments);
     let matrix = held.columns(&rises, 1, &held.rows);

@@ -1,0 +1,331 @@
+//! Verner's explicit Runge-Kutta pair of orders 9 and 8, step by step.
+//!
+//! ```text
+//! k_i = f(t + c_i h, y + h sum a_ij k_j),   y_1 = y + h sum b_i k_i,   error: h sum (b_i - b^_i) k_i
+//! y(t + s h) = y + h sum b_i(s) k_i         with the five stages behind the step, k_16 = f(t + h, y_1) the first of them
+//! ```
+//!
+//! (J. H. Verner, *Numerical Algorithms* 53 (2010) 383; the coefficients "RKV98.IIa.Efficient" with the
+//! interpolant of order 8.) The coefficients are those of the crate `differential-equations`, whose own
+//! step also adds the stages with a coefficient of zero, half of them, and takes those behind the step
+//! where nothing is interpolated. Each sum is taken in the same order, so that the values are the same.
+//!
+//! A step of n values costs 16 evaluations of the rates and some 110 n products; the interpolant of m of
+//! them four evaluations and some 60 m products more.
+
+use std::sync::LazyLock;
+
+use differential_equations::error::Error as StepError;
+use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
+use differential_equations::stats::Evals;
+use differential_equations::status::Status;
+use differential_equations::tableau::ButcherTableau;
+
+use super::integrate::IntegrationOptions;
+use super::sample::StateVector;
+
+/// Stages of a step, and with those of its interpolant.
+const STAGES: usize = 16;
+const ALL_STAGES: usize = 21;
+
+/// Order of the step, and number of coefficients of each stage in its interpolant.
+const ORDER: usize = 9;
+
+/// Stages with their coefficients, those of zero left out.
+type Terms = Vec<(usize, f64)>;
+
+/// The coefficients of the pair.
+struct Coefficients {
+    nodes: [f64; ALL_STAGES],
+    /// Those of each stage.
+    stages: Vec<Terms>,
+    high: Terms,
+    low: Terms,
+    /// Those of the stages in the interpolant, a row for each power of the fraction of the step, from 1 to 9.
+    inside: [[f64; ALL_STAGES]; ORDER],
+}
+
+static COEFFICIENTS: LazyLock<Coefficients> = LazyLock::new(|| {
+    let table = ButcherTableau::<f64, STAGES, ALL_STAGES>::rkv988e();
+    let terms = |row: &[f64]| -> Terms {
+        row.iter().copied().enumerate().filter(|(_, factor)| *factor != 0.0).collect()
+    };
+    let inside = table.bi.unwrap_or([[0.0; ALL_STAGES]; ALL_STAGES]);
+    Coefficients {
+        nodes: table.c,
+        stages: table.a.iter().map(|row| terms(row)).collect(),
+        high: terms(&table.b),
+        low: terms(&table.bh.unwrap_or(table.b)),
+        inside: std::array::from_fn(|power| inside.map(|row| row[power])),
+    }
+});
+
+/// The integration by steps of the pair.
+pub(super) struct VernerSteps<Y: StateVector> {
+    relative_tolerance: f64,
+    absolute_tolerance: f64,
+    first_step: f64,
+    longest_step: f64,
+    /// The number of values, from the first on, that are interpolated: the stages behind the step are
+    /// computed for them alone.
+    interpolated: usize,
+    time: f64,
+    time_before: f64,
+    step: f64,
+    step_before: f64,
+    values: Y,
+    values_before: Y,
+    rates: Y,
+    /// The rates of all stages, one after the other.
+    stages: Vec<f64>,
+    /// Values at which rates are evaluated, and the rates.
+    scratch: [Y; 2],
+    /// The same of the first values, behind the step.
+    leading: [Y; 2],
+    rejections: usize,
+    status: Status<f64, Y>,
+}
+
+impl<Y: StateVector> VernerSteps<Y> {
+    /// An integration with a first step (0: chosen by the rates) and a longest one, which still is to
+    /// be [begun](OrdinaryNumericalMethod::init).
+    pub(super) fn new(
+        options: &IntegrationOptions,
+        [first_step, longest_step]: [f64; 2],
+        interpolated: usize,
+    ) -> Self {
+        Self {
+            relative_tolerance: options.relative_tolerance,
+            absolute_tolerance: options.absolute_tolerance,
+            first_step,
+            longest_step,
+            interpolated,
+            time: 0.0,
+            time_before: 0.0,
+            step: 0.0,
+            step_before: 0.0,
+            values: Y::zeros(),
+            values_before: Y::zeros(),
+            rates: Y::zeros(),
+            stages: vec![],
+            scratch: [Y::zeros(), Y::zeros()],
+            leading: [Y::zeros(), Y::zeros()],
+            rejections: 0,
+            status: Status::Uninitialized,
+        }
+    }
+
+    /// The values that are interpolated, at a time within the last step; `None` outside.
+    pub(super) fn values_at(&self, time: f64) -> Option<Y> {
+        if time < self.time_before || time > self.time {
+            return None;
+        }
+        let fraction = (time - self.time_before) / self.step_before;
+        // Horner's scheme for all stages at once.
+        let mut sums = [0.0; ALL_STAGES];
+        for row in COEFFICIENTS.inside.iter().rev() {
+            for (sum, coefficient) in sums.iter_mut().zip(row) {
+                *sum = *sum * fraction + coefficient;
+            }
+        }
+        let (mut factors, mut count) = ([(0, 0.0); ALL_STAGES], 0);
+        for (stage, sum) in sums.into_iter().enumerate().filter(|(_, sum)| *sum != 0.0) {
+            factors[count] = (stage, sum * fraction);
+            count += 1;
+        }
+        let factors = &factors[..count];
+        let mut found = self.leading[0].clone();
+        add(&self.values_before, self.step_before, factors, &self.stages, &mut found);
+        Some(found)
+    }
+
+    /// The first step by the sizes of the rates and of their change (E. Hairer, S. P. Norsett, G.
+    /// Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., Springer 1993, section II.4).
+    fn chosen_step<F: ODE<f64, Y> + ?Sized>(&mut self, equations: &F, end: f64) -> f64 {
+        const SMALL: f64 = 1e-10;
+        let allowed = |value: f64| self.absolute_tolerance + self.relative_tolerance * value.abs();
+        let (values, rates) = (self.values.as_ref(), self.rates.as_ref());
+        let square = |one: &[f64]| -> f64 {
+            { one.iter().zip(values) }.fold(0.0, |sum, (x, y)| sum + (x / allowed(*y)).powi(2))
+        };
+        let (size, speed) = (square(values), square(rates));
+        let guess =
+            if speed <= SMALL || size <= SMALL { 1e-6 } else { (size / speed).sqrt() * 0.01 };
+        let short = guess.min(self.longest_step);
+        let [ahead, changed] = &mut self.scratch;
+        for ((ahead, value), rate) in ahead.as_mut().iter_mut().zip(values).zip(rates) {
+            *ahead = value + short * rate;
+        }
+        equations.diff(self.time + short, ahead, changed);
+        for (changed, rate) in changed.as_mut().iter_mut().zip(rates) {
+            *changed -= rate;
+        }
+        let bend = square(self.scratch[1].as_ref()).sqrt() / short;
+        let steepest = speed.sqrt().max(bend);
+        let by_bend = match steepest <= 1e-15 {
+            true => short * 1e-3,
+            false => (0.01 / steepest).powf(1.0 / ORDER as f64),
+        };
+        (short * 100.0).min(by_bend).min(self.longest_step).min(end - self.time)
+    }
+
+    /// Evaluates the rates of a stage of the step that begins here, of all values or, behind the step, of
+    /// the first ones.
+    fn evaluate<F: ODE<f64, Y> + ?Sized>(&mut self, equations: &F, stage: usize) {
+        let table = &*COEFFICIENTS;
+        let all = if stage < STAGES { &mut self.scratch } else { &mut self.leading };
+        let [at, rates] = all;
+        add(&self.values, self.step, &table.stages[stage], &self.stages, at);
+        equations.diff(self.time + table.nodes[stage] * self.step, at, rates);
+        set_stage(&mut self.stages, self.values.as_ref().len(), stage, rates.as_ref());
+    }
+}
+
+/// Writes the rates of a stage, of all values or of the first ones.
+fn set_stage(stages: &mut [f64], count: usize, stage: usize, rates: &[f64]) {
+    stages[stage * count..][..rates.len()].copy_from_slice(rates);
+}
+
+/// Writes the first values, as many as the sum has, with the products of a step, factors and rates of the
+/// stages added.
+fn add<Y: StateVector>(values: &Y, step: f64, terms: &[(usize, f64)], stages: &[f64], sum: &mut Y) {
+    /// Number of values whose sums are held in registers.
+    const WIDTH: usize = 8;
+    let (values, sum) = (values.as_ref(), sum.as_mut());
+    let (count, last) = (values.len(), sum.len());
+    let mut scaled = [(0, 0.0); ALL_STAGES];
+    for (scaled, (stage, factor)) in scaled.iter_mut().zip(terms) {
+        *scaled = (stage * count, factor * step);
+    }
+    let terms = &scaled[..terms.len()];
+    let whole = last - last % WIDTH;
+    for first in (0..whole).step_by(WIDTH) {
+        let mut part = [0.0; WIDTH];
+        part.copy_from_slice(&values[first..first + WIDTH]);
+        for (stage, factor) in terms {
+            for (part, rate) in part.iter_mut().zip(&stages[stage + first..][..WIDTH]) {
+                *part += factor * rate;
+            }
+        }
+        sum[first..first + WIDTH].copy_from_slice(&part);
+    }
+    for index in whole..last {
+        let own = terms.iter().map(|(stage, factor)| factor * stages[stage + index]);
+        sum[index] = own.fold(values[index], |sum, own| sum + own);
+    }
+}
+
+impl<Y: StateVector> OrdinaryNumericalMethod<f64, Y> for VernerSteps<Y> {
+    fn init<F: ODE<f64, Y> + ?Sized>(
+        &mut self,
+        equations: &F,
+        time: f64,
+        end: f64,
+        values: &Y,
+    ) -> Result<Evals, StepError<f64, Y>> {
+        (self.time, self.time_before) = (time, time);
+        self.values = values.clone();
+        self.values_before = values.clone();
+        self.rates = values.clone();
+        let first = values.leading(self.interpolated);
+        self.leading = [first.clone(), first];
+        self.stages = vec![0.0; ALL_STAGES * values.as_ref().len()];
+        self.scratch = [values.clone(), values.clone()];
+        equations.diff(time, values, &mut self.rates);
+        self.step = match self.first_step {
+            0.0 => self.chosen_step(equations, end),
+            step => step,
+        };
+        self.status = Status::Initialized;
+        Ok(Evals::new())
+    }
+
+    fn step<F: ODE<f64, Y> + ?Sized>(&mut self, equations: &F) -> Result<Evals, StepError<f64, Y>> {
+        /// Part of the next step that its error allows; least and largest ratio of two steps.
+        const SAFETY: f64 = 0.9;
+        const LEAST: f64 = 0.2;
+        const MOST: f64 = 10.0;
+        /// Ratio to the last step below which a step is too short.
+        const SHORTEST: f64 = 1e-14;
+        const MOST_REJECTIONS: usize = 100;
+        if self.step.abs() < self.step_before.abs() * SHORTEST {
+            return Err(StepError::StepSize { t: self.time, y: self.values.clone() });
+        }
+        let table = &*COEFFICIENTS;
+        let count = self.values.as_ref().len();
+        set_stage(&mut self.stages, count, 0, self.rates.as_ref());
+        for stage in 1..STAGES {
+            self.evaluate(equations, stage);
+        }
+        let [high, low] = &mut self.scratch;
+        add(&self.values, self.step, &table.high, &self.stages, high);
+        add(&self.values, self.step, &table.low, &self.stages, low);
+        let (high, low) = (high.as_ref(), low.as_ref());
+        let errors = self.values.as_ref().iter().zip(high).zip(low).map(|((value, high), low)| {
+            let size = value.abs().max(high.abs());
+            ((high - low) / (self.absolute_tolerance + self.relative_tolerance * size)).abs()
+        });
+        let error = errors.fold(0.0, f64::max);
+        let mut scale = SAFETY * error.powf(-1.0 / ORDER as f64);
+        scale = scale.clamp(LEAST, MOST);
+        if error > 1.0 {
+            self.status = Status::RejectedStep;
+            self.rejections += 1;
+            if self.rejections >= MOST_REJECTIONS {
+                return Err(StepError::Stiffness { t: self.time, y: self.values.clone() });
+            }
+        } else {
+            if matches!(self.status, Status::RejectedStep) {
+                self.rejections = 0;
+                scale = scale.min(1.0);
+            }
+            self.status = Status::Solving;
+            let end = self.time + self.step;
+            equations.diff(end, &self.scratch[0], &mut self.rates);
+            if self.interpolated > 0 {
+                set_stage(&mut self.stages, count, STAGES, self.rates.as_ref());
+                for stage in STAGES + 1..ALL_STAGES {
+                    self.evaluate(equations, stage);
+                }
+            }
+            (self.time_before, self.step_before) = (self.time, self.step);
+            self.time = end;
+            std::mem::swap(&mut self.values_before, &mut self.values);
+            self.values.clone_from(&self.scratch[0]);
+        }
+        self.step = (self.step * scale).min(self.longest_step);
+        Ok(Evals::new())
+    }
+
+    fn t(&self) -> f64 {
+        self.time
+    }
+
+    fn y(&self) -> &Y {
+        &self.values
+    }
+
+    fn t_prev(&self) -> f64 {
+        self.time_before
+    }
+
+    fn y_prev(&self) -> &Y {
+        &self.values_before
+    }
+
+    fn h(&self) -> f64 {
+        self.step
+    }
+
+    fn set_h(&mut self, step: f64) {
+        self.step = step;
+    }
+
+    fn status(&self) -> &Status<f64, Y> {
+        &self.status
+    }
+
+    fn set_status(&mut self, status: Status<f64, Y>) {
+        self.status = status;
+    }
+}

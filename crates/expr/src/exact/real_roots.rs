@@ -137,24 +137,106 @@ fn divide(dividend: &[Rational], divisor: &[Rational]) -> (Vec<Rational>, Vec<Ra
 /// The monic greatest common divisor.
 pub(super) fn gcd(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
     let (mut a, mut b) = (trimmed(a.to_vec()), trimmed(b.to_vec()));
+    let monic = |list: &[Rational]| -> Vec<Rational> {
+        list.last().map_or(vec![], |leading| list.iter().map(|c| c / leading).collect())
+    };
+    if let Some(found) = gcd_by_residues(&primitive(&a), &primitive(&b)) {
+        return monic(&found.into_iter().map(Rational::from_integer).collect::<Vec<_>>());
+    }
     while !b.is_empty() {
         let next = remainder(&a, &b);
         (a, b) = (b, next);
     }
-    match a.last().cloned() {
-        Some(leading) => a.iter().map(|c| c / &leading).collect(),
-        None => a,
-    }
+    monic(&a)
 }
 
+/// The greatest common divisor of two primitive polynomials by Euclid's algorithm modulo a prime, whose
+/// coefficients do not grow (W. S. Brown, *J. ACM* 18 (1971) 478); `None` if one of them is zero, or the
+/// prime tells too little.
+///
+/// Modulo a prime that divides no leading coefficient the degree is not lower than that of the true
+/// divisor, so that what divides both is it.
+fn gcd_by_residues(a: &[Integer], b: &[Integer]) -> Option<Vec<Integer>> {
+    /// A Mersenne prime.
+    const PRIME: u64 = (1 << 61) - 1;
+    let residue = |number: &Integer| number.remainder(PRIME).rem_euclid(i128::from(PRIME)) as u64;
+    let times = |x: u64, y: u64| (u128::from(x) * u128::from(y) % u128::from(PRIME)) as u64;
+    // Fermat: x^(p - 2) x = 1.
+    let inverse = |x: u64| {
+        let (mut power, mut square, mut left) = (1, x, PRIME - 2);
+        while left > 0 {
+            power = if left % 2 == 1 { times(power, square) } else { power };
+            (square, left) = (times(square, square), left / 2);
+        }
+        power
+    };
+    let residues = |list: &[Integer]| -> Option<Vec<u64>> {
+        let all: Vec<u64> = list.iter().map(residue).collect();
+        all.last().is_some_and(|leading| *leading != 0).then_some(all)
+    };
+    let (mut shared, mut rest) = (residues(a)?, residues(b)?);
+    while !rest.is_empty() {
+        let unit = inverse(*rest.last()?);
+        rest.iter_mut().for_each(|c| *c = times(*c, unit));
+        while shared.len() >= rest.len() {
+            let shift = shared.len() - rest.len();
+            let factor = PRIME - *shared.last()?;
+            for (k, c) in rest.iter().enumerate() {
+                shared[shift + k] = (shared[shift + k] + times(factor, *c)) % PRIME;
+            }
+            while shared.last() == Some(&0) {
+                shared.pop();
+            }
+        }
+        (shared, rest) = (rest, shared);
+    }
+    if shared.len() == 1 {
+        return Some(vec![Integer::one()]);
+    }
+    // The leading coefficient of the true divisor divides that of both.
+    let leading = residue(&a.last()?.gcd(b.last()?));
+    let centred = |c: u64| match c > PRIME / 2 {
+        true => Integer::from(c) - Integer::from(PRIME),
+        false => Integer::from(c),
+    };
+    let unit = times(leading, inverse(*shared.last()?));
+    let found = without_content(shared.iter().map(|c| centred(times(*c, unit))).collect());
+    (is_divisor(&found, a) && is_divisor(&found, b)).then_some(found)
+}
+
+/// Whether a primitive polynomial divides another one; the quotient then has whole coefficients.
+fn is_divisor(divisor: &[Integer], dividend: &[Integer]) -> bool {
+    let Some(leading) = divisor.last() else { return false };
+    let mut rest = dividend.to_vec();
+    while rest.len() >= divisor.len() {
+        let shift = rest.len() - divisor.len();
+        let Some(highest) = rest.pop() else { return false };
+        let (factor, left) = highest.div_rem(leading);
+        if !left.is_zero() {
+            return false;
+        }
+        for (k, c) in divisor[..divisor.len() - 1].iter().enumerate() {
+            rest[shift + k] -= &factor * c;
+        }
+    }
+    rest.iter().all(Zero::is_zero)
+}
+
+/// The product, by whole numbers over a common denominator, so that each coefficient is reduced once.
 pub(super) fn product(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
-    let mut sum = vec![Rational::zero(); (a.len() + b.len()).saturating_sub(1)];
-    for (i, left) in a.iter().enumerate() {
-        for (k, right) in b.iter().enumerate() {
+    let whole = |list: &[Rational]| -> (Vec<Integer>, Integer) {
+        let common = list.iter().fold(Integer::one(), |lcm, c| lcm.lcm(c.denom()));
+        (list.iter().map(|c| c.numer() * (&common / c.denom())).collect(), common)
+    };
+    let ((left, below), (right, own)) = (whole(a), whole(b));
+    let below = below * own;
+    let mut sum = vec![Integer::zero(); (a.len() + b.len()).saturating_sub(1)];
+    for (i, left) in left.iter().enumerate() {
+        for (k, right) in right.iter().enumerate() {
             sum[i + k] += left * right;
         }
     }
-    trimmed(sum)
+    trimmed(sum.into_iter().map(|c| Rational::new(c, below.clone())).collect())
 }
 
 pub(super) fn difference(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
@@ -366,6 +448,25 @@ mod tests {
         }
         assert_eq!(roots[0].exact, Some(ratio(1, 3)));
         assert!(roots[1].exact.is_none() && roots[1].factor.len() == 4);
+    }
+
+    /// Divisors of products with a known common factor: none, one of large numbers, and one where the prime
+    /// of the residues divides a leading coefficient.
+    #[test]
+    fn the_common_divisor_is_the_common_factor() {
+        let large = ratio(10_i64.pow(18) + 9, 7).pow(5);
+        let parts = [
+            vec![ratio(-3, 7), ratio(2, 5), ratio(1, 1)],
+            vec![large.clone(), -large, ratio(4, 3)],
+            vec![ratio(1, 1), ratio((1 << 61) - 1, 1)],
+        ];
+        for shared in [&polynomial(&[5]), &parts[0], &parts[1], &parts[2]] {
+            let [a, b] = [[-2, 0, 3], [7, 1, -4]].map(|other| product(shared, &polynomial(&other)));
+            let monic: Vec<Rational> =
+                shared.iter().map(|c| c / &shared[shared.len() - 1]).collect();
+            assert_eq!(gcd(&a, &b), monic);
+            assert_eq!(gcd(&[], &b).len(), b.len());
+        }
     }
 
     /// -3 (z - 2)(z - 5)^2 (3 z - 1)^3 (z^2 + 1)^2: what is left is -3 (z - 2)(z - 1/3).

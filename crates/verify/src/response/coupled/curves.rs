@@ -10,8 +10,15 @@
 //! ```
 //!
 //! (Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, Springer 2004, section 10.3.) The curve
-//! is a branch of orbits of the map `(y, p) -> (P(y; p, q), p + s)`, whose last row is
-//! differentiated by central differences: a point costs some 4 (n + 2) periods.
+//! is a branch of orbits of the map `(y, p) -> (P(y; p, q), p + s)`. Beside a fold or a period doubling
+//! the matrix A = M -+ 1 has one singular value that is nearly zero, with the vectors l and r, and
+//!
+//! ```text
+//! d det(A) = det(U) det(V) (product of the other singular values) l^T dM r,     dM r = d/de (P_y, P_p, P_q)(y + e r)
+//! ```
+//!
+//! is a difference of two periods for all unknowns at once. The determinant of a Neimark-Sacker point is
+//! differentiated by each unknown in turn, with some 4 (n + 2) periods a point.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -36,6 +43,9 @@ use crate::symbol::Symbol;
 
 /// Numbers of values of the first and of the second parameter at which stable motions are counted.
 const COUNTED: [usize; 2] = [41, 15];
+
+/// Step of differences, in the sizes of the states and in the ranges.
+const STEP: f64 = 1e-5;
 
 /// Largest number of points of a curve in one direction.
 const MOST: usize = 200;
@@ -245,25 +255,13 @@ impl TwoParameters<'_> {
         let states = self.problem.state_sizes(&self.scale[..n], self.scale);
         let mut all = states.clone();
         all.extend([high - low, range[1] - range[0]]);
-        let value = |unknowns: &[f64]| {
-            let image = self.image(&unknowns[..n], section, [unknowns[n], unknowns[n + 1]])?;
-            Some(test(kind, &image.monodromy))
-        };
-        // The gradient of the test function by all unknowns, by central differences.
-        let gradient = |unknowns: &[f64]| -> Option<Vec<f64>> {
-            const STEP: f64 = 1e-5;
-            let slope = |index: usize| {
-                let moved = |sign: f64| {
-                    let mut moved = unknowns.to_vec();
-                    moved[index] += sign * STEP * all[index];
-                    value(&moved)
-                };
-                Some((moved(1.0)? - moved(-1.0)?) / (2.0 * STEP * all[index]))
-            };
-            (0..n + 2).map(slope).collect()
+        let gradient = |unknowns: &[f64], image: &Image| match kind {
+            BifurcationKind::NeimarkSacker => self.gradient_by_each(kind, section, unknowns, &all),
+            _ => self.gradient_of_determinant(kind, section, unknowns, (image, &states)),
         };
         let first: Vec<f64> = start.state.iter().copied().chain(start.parameters).collect();
-        let Some(slopes) = gradient(&first) else { return vec![] };
+        let image = self.image(&first[..n], section, start.parameters);
+        let Some(slopes) = image.and_then(|image| gradient(&first, &image)) else { return vec![] };
         let steep = slopes.iter().zip(&all).map(|(slope, size)| (slope * size).abs());
         let steep = steep.fold(0.0, f64::max);
         if !(steep > 0.0 && steep.is_finite()) {
@@ -274,7 +272,7 @@ impl TwoParameters<'_> {
         let map = |start: &DVector<f64>, second: f64| {
             let unknowns: Vec<f64> = start.iter().copied().chain([second]).collect();
             let image = self.image(&unknowns[..n], section, [unknowns[n], second])?;
-            let slopes = gradient(&unknowns)?;
+            let slopes = gradient(&unknowns, &image)?;
             let mut by_start = image.monodromy.clone().resize(n + 1, n + 1, 0.0);
             by_start.view_mut((0, n), (n, 1)).copy_from(&image.by_parameter);
             for column in 0..n {
@@ -309,6 +307,62 @@ impl TwoParameters<'_> {
                 || kind == BifurcationKind::NeimarkSacker && !self.has_pair(point)
         };
         equations.branch_through(point, &limits, &outside).0
+    }
+
+    /// The gradient of a test function by all unknowns, by central differences.
+    fn gradient_by_each(
+        &self,
+        kind: BifurcationKind,
+        section: f64,
+        unknowns: &[f64],
+        sizes: &[f64],
+    ) -> Option<Vec<f64>> {
+        let n = self.problem.states.len();
+        let slope = |index: usize| {
+            let moved = |sign: f64| {
+                let mut moved = unknowns.to_vec();
+                moved[index] += sign * STEP * sizes[index];
+                let image = self.image(&moved[..n], section, [moved[n], moved[n + 1]])?;
+                Some(test(kind, &image.monodromy))
+            };
+            Some((moved(1.0)? - moved(-1.0)?) / (2.0 * STEP * sizes[index]))
+        };
+        (0..n + 2).map(slope).collect()
+    }
+
+    /// The gradient by all unknowns of det(M - 1), or of det(M + 1) for a period doubling, beside its zero:
+    /// up to parts that vanish there (the head of this file).
+    fn gradient_of_determinant(
+        &self,
+        kind: BifurcationKind,
+        section: f64,
+        unknowns: &[f64],
+        (image, sizes): (&Image, &[f64]),
+    ) -> Option<Vec<f64>> {
+        let n = self.problem.states.len();
+        let sign = if kind == BifurcationKind::PeriodDoubling { 1.0 } else { -1.0 };
+        let scaled = |i: usize, j: usize| {
+            image.monodromy[(i, j)] * sizes[j] / sizes[i] + if i == j { sign } else { 0.0 }
+        };
+        let decomposed = DMatrix::from_fn(n, n, scaled).try_svd(true, true, f64::EPSILON, 1_000)?;
+        let (left, right) = (decomposed.u?, decomposed.v_t?);
+        let (least, values) = (decomposed.singular_values.imin(), decomposed.singular_values);
+        let others = (0..n).filter(|index| *index != least).map(|index| values[index]);
+        let factor = others.product::<f64>() * left.determinant() * right.determinant();
+        let beside = |sign: f64| {
+            let state: Vec<f64> =
+                (0..n).map(|i| unknowns[i] + sign * STEP * sizes[i] * right[(least, i)]).collect();
+            self.image(&state, section, [unknowns[n], unknowns[n + 1]])
+        };
+        let (above, below) = (beside(1.0)?, beside(-1.0)?);
+        let along = |column: &dyn Fn(&Image, usize) -> f64| -> f64 {
+            let change = |i: usize| (column(&above, i) - column(&below, i)) / (2.0 * STEP);
+            factor * (0..n).map(|i| left[(i, least)] / sizes[i] * change(i)).sum::<f64>()
+        };
+        let by_states = (0..n).map(|j| along(&|image: &Image, i| image.monodromy[(i, j)]));
+        let by_parameter = along(&|image: &Image, i| image.by_parameter[i]);
+        let by_second = along(&|image: &Image, i| image.by_second[i]);
+        Some(by_states.chain([by_parameter, by_second]).collect())
     }
 
     /// Whether a complex pair of multipliers lies on the unit circle: the test function is zero as

@@ -294,6 +294,21 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         to: &OrbitPoint<Kept>,
         part: f64,
     ) -> Option<OrbitPoint<Kept>> {
+        self.between_from(
+            [from, to],
+            part,
+            &(&from.unknowns + (&to.unknowns - &from.unknowns) * part),
+        )
+    }
+
+    /// The orbit between two of a branch, at this fraction of the way, where the search begins near some
+    /// unknowns.
+    pub fn between_from(
+        &self,
+        [from, to]: [&OrbitPoint<Kept>; 2],
+        part: f64,
+        near: &DVector<f64>,
+    ) -> Option<OrbitPoint<Kept>> {
         let sizes = (self.sizes)(from);
         let way = &to.unknowns - &from.unknowns;
         let direction = way.component_div(&sizes);
@@ -301,8 +316,12 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         if length == 0.0 {
             return Some(from.clone());
         }
-        let guess = &from.unknowns + way * part;
-        self.corrected(&guess, &(direction / length), &sizes).map(|(point, _)| point)
+        let direction = direction / length;
+        // At right angles to the way through the place on it.
+        let place = &from.unknowns + way * part;
+        let ahead = direction.dot(&(near - place).component_div(&sizes));
+        let guess = near - (&direction * ahead).component_mul(&sizes);
+        self.corrected(&guess, &direction, &sizes).map(|(point, _)| point)
     }
 
     /// The orbit after the last of these at this distance, and the number of periods that were

@@ -122,6 +122,38 @@ pub(super) fn changes_between(
     found
 }
 
+/// The orbits between two neighbouring ones that a search for one of them has found: the next one is
+/// looked for near those on both sides of it.
+struct Between<'a> {
+    orbits: &'a Orbits<'a>,
+    ends: [&'a Orbit; 2],
+    /// The orbits with their parts of the way, in order.
+    found: Vec<(f64, Orbit)>,
+}
+
+impl<'a> Between<'a> {
+    fn new(orbits: &'a Orbits<'a>, ends: [&'a Orbit; 2]) -> Self {
+        Self { orbits, ends, found: vec![(0.0, ends[0].clone()), (1.0, ends[1].clone())] }
+    }
+
+    /// The orbit at a part of the way.
+    fn at(&mut self, part: f64) -> Option<Orbit> {
+        let index = self.found.partition_point(|(other, _)| *other < part);
+        if let Some((_, orbit)) = self.found.get(index).filter(|(other, _)| *other == part) {
+            return Some(orbit.clone());
+        }
+        let (low, before) = self.found.get(index.checked_sub(1)?)?;
+        let (high, behind) = self.found.get(index)?;
+        let share = (part - low) / (high - low);
+        let near = &before.unknowns + (&behind.unknowns - &before.unknowns) * share;
+        let [from, to] = self.ends;
+        let orbit = self.orbits.between_from([from, to], part, &near);
+        let orbit = orbit.or_else(|| self.orbits.between(from, to, part))?;
+        self.found.insert(index, (part, orbit.clone()));
+        Some(orbit)
+    }
+}
+
 /// The orbit between two others at which the number of impacts in a period changes.
 fn grazing_between(orbits: &Orbits, from: &Orbit, to: &Orbit) -> Option<Orbit> {
     const HALVINGS: u32 = 40;
@@ -134,9 +166,10 @@ fn grazing_between(orbits: &Orbits, from: &Orbit, to: &Orbit) -> Option<Orbit> {
     let is_between = |orbit: &Orbit| range.contains(&orbit.parameter()) && extent(orbit) >= least;
     let (mut low, mut high) = (0.0, 1.0);
     let mut nearest = from.clone();
+    let mut known = Between::new(orbits, [from, to]);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        let orbit = orbits.between(from, to, middle);
+        let orbit = known.at(middle);
         match orbit {
             Some(orbit)
                 if orbit.kept.encounters.counts() == from.kept.encounters.counts()
@@ -173,14 +206,8 @@ pub(super) fn change_between(
     if kind == NeimarkSacker && outside(from).abs_diff(outside(to)) != 2 {
         return None;
     }
-    let value = |part: f64| {
-        let orbit = match part {
-            0.0 => Some(from.clone()),
-            1.0 => Some(to.clone()),
-            part => orbits.between(from, to, part),
-        };
-        orbit.map_or(f64::NAN, |orbit| test(problem, kind, &orbit))
-    };
+    let mut known = Between::new(orbits, [from, to]);
+    let value = |part: f64| known.at(part).map_or(f64::NAN, |orbit| test(problem, kind, &orbit));
     let part = match kind {
         BranchPoint => Some(bisect_sign_change(value)),
         _ => find_root(value, 0.0, 1.0).ok(),
@@ -188,8 +215,7 @@ pub(super) fn change_between(
     // On a crossing the equations are singular and Newton's method may not converge; an orbit
     // beside it is near enough.
     const BESIDE: [f64; 5] = [0.0, 1e-6, -1e-6, 1e-3, -1e-3];
-    let mut orbit =
-        BESIDE.iter().find_map(|aside| orbits.between(from, to, (part + aside).clamp(0.0, 1.0)))?;
+    let mut orbit = BESIDE.iter().find_map(|aside| known.at((part + aside).clamp(0.0, 1.0)))?;
     if kind == BranchPoint {
         // On the crossing the equations have two independent tangents: that of this branch is
         // along the way from one orbit to the other.

@@ -626,17 +626,11 @@ impl<S: Sample> Leg<'_, '_, S> {
                     }
                     StepToEnd::Found(until, end) => {
                         watches = before;
-                        let found = self.located_events(&until, &mut watches, moved.as_ref());
-                        let Some(mut happenings) = found else {
+                        let moved = moved.as_ref();
+                        let all = self.up_to_end(&until, end, &happenings, (&mut watches, moved));
+                        let Some(happenings) = all else {
                             return LegEnd::Stopped(StopReason::NonFinite { time });
                         };
-                        // What ends the leg at the same time comes after what was found first.
-                        let last = end.0.time() - LAST * until.length;
-                        happenings.retain(|(at, event, _)| match self.events[*event].action {
-                            Action::Record => at.time() < end.0.time(),
-                            _ => *event != end.1 && at.time() < last,
-                        });
-                        happenings.push(end);
                         (until, happenings)
                     }
                 };
@@ -791,6 +785,36 @@ impl<S: Sample> Leg<'_, '_, S> {
             length += left;
         }
         StepToEnd::None
+    }
+
+    /// Returns the events inside a step that ends at one of them, this one last, from those that were
+    /// `found` inside the step before it was shortened; `None` if an event function is not finite.
+    fn up_to_end(
+        &self,
+        step: &TrajectoryStep<S>,
+        end: (S, usize, bool),
+        found: &[(S, usize, bool)],
+        (watches, moved): (&mut [SignTracker], Option<&S>),
+    ) -> Option<Vec<(S, usize, bool)>> {
+        let mut all = self.located_events(step, watches, moved)?;
+        let rounding = LAST * step.length;
+        let last = end.0.time() - rounding;
+        // What ends the leg at the same time comes after what was found first.
+        all.retain(|(at, event, _)| match self.events[*event].action {
+            Action::Record => at.time() < end.0.time(),
+            _ => *event != end.1 && at.time() < last,
+        });
+        // What is recorded at the same time may lie beyond the end by rounding.
+        let before = found.iter().take_while(|(_, event, _)| *event != end.1);
+        let ending = found.iter().find(|(_, event, _)| *event == end.1)?.0.time();
+        for (at, event, rising) in before {
+            let is_known = all.iter().any(|(at, known, _)| known == event && at.time() > last);
+            if ending - at.time() <= rounding && !is_known {
+                all.push((end.0.clone(), *event, *rising));
+            }
+        }
+        all.push(end);
+        Some(all)
     }
 
     /// Records the events of a step, up to the first that ends the leg: the path then ends there.

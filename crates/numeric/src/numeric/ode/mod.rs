@@ -433,6 +433,28 @@ mod tests {
         }
     }
 
+    /// A surface that is recorded and switched on: each passage is recorded once.
+    #[test]
+    fn an_event_at_the_same_time_as_a_switch_is_recorded() {
+        for part in 0..100 {
+            let phase = 0.031 * f64::from(part);
+            let start = State { t: 0.0, x: phase.cos(), v: -phase.sin() };
+            let passed = || Event::record(|_, x, _| x - 0.3);
+            let side = |next: usize| Event::switch(|_, x, _| x - 0.3, move |state| (next, state));
+            let phases = [
+                IntegrationPhase::new(|_, x, _| -x, vec![passed(), side(1).falling()]),
+                IntegrationPhase::new(|_, x, _| -x, vec![passed(), side(0).rising()]),
+            ];
+            let first = usize::from(start.x < 0.3);
+            let options = IntegrationOptions::with_tolerance(1e-12);
+            let path = integrate_phases(&phases, first, start, 20.0, &options).unwrap();
+            let recorded = path.occurrences().iter().filter(|found| found.event == 0).count();
+            let switched = path.occurrences().iter().filter(|found| found.event == 1).count();
+            assert!(switched >= 6, "{phase}: {switched}");
+            assert_eq!(recorded, switched, "{phase}");
+        }
+    }
+
     #[test]
     fn what_cannot_begin_is_refused() {
         let refuse = |start, end_time, options: IntegrationOptions| {

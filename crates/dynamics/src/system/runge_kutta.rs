@@ -46,8 +46,13 @@ pub(super) struct ScaledTrajectory {
 impl ScaledTrajectory {
     /// All states at a time within the path.
     pub(super) fn states_at(&self, time: f64) -> Option<Vec<f64>> {
-        let scaled = self.units.count(time).min(self.trajectory.end().t);
-        let point = self.trajectory.state_at(scaled)?;
+        let end = self.trajectory.end();
+        // There and back a time of the run changes by rounding, and the state at its end is known
+        // better than by the interpolant.
+        let point = match time == self.units.time(end.t) {
+            true => end,
+            false => self.trajectory.state_at(self.units.count(time).min(end.t))?,
+        };
         Some(self.states(&point).collect())
     }
 

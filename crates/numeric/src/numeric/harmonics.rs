@@ -53,8 +53,15 @@ impl Harmonics {
 #[derive(Clone)]
 pub struct Transform {
     whole: Arc<dyn Fft<f64>>,
-    /// The transform of half of an even number of samples, and `e^(-i theta_k)` for each of them.
-    half: Option<(Arc<dyn Fft<f64>>, Arc<[Complex<f64>]>)>,
+    half: Option<HalfTransform>,
+}
+
+/// The transform of half of an even number of samples.
+#[derive(Clone)]
+struct HalfTransform {
+    transform: Arc<dyn Fft<f64>>,
+    /// `e^(-i theta_k)` for each of them, theta_k being that of all samples.
+    turns: Arc<[Complex<f64>]>,
 }
 
 impl std::fmt::Debug for Transform {
@@ -73,7 +80,10 @@ impl Transform {
         let is_even = samples.is_multiple_of(2) && half > 0;
         Self {
             whole: planner.plan_fft_forward(samples),
-            half: is_even.then(|| (planner.plan_fft_forward(half), turns().collect())),
+            half: is_even.then(|| HalfTransform {
+                transform: planner.plan_fft_forward(half),
+                turns: turns().collect(),
+            }),
         }
     }
 
@@ -104,7 +114,7 @@ impl Transform {
     /// sum is `Z_k + Z*_(-k)` over the even samples and, turned by theta_k, `-i (Z_k - Z*_(-k))` over
     /// the odd ones, each by two.
     fn spectrum(&self, values: &[f64], count: usize) -> Vec<Complex<f64>> {
-        let Some((half, turns)) = &self.half else {
+        let Some(HalfTransform { transform, turns }) = &self.half else {
             let mut parts: Vec<Complex<f64>> =
                 values.iter().map(|value| Complex::from(*value)).collect();
             self.whole.process(&mut parts);
@@ -114,7 +124,7 @@ impl Transform {
         let pairs = values.chunks_exact(2);
         let mut parts: Vec<Complex<f64>> =
             pairs.map(|pair| Complex::new(pair[0], pair[1])).collect();
-        half.process(&mut parts);
+        transform.process(&mut parts);
         let n = parts.len();
         let part = |k: usize| {
             let (here, mirrored) = (parts[k % n], parts[(n - k % n) % n].conj());

@@ -93,8 +93,8 @@ pub struct LocatedForces {
     rows: Vec<f64>,
 }
 
-/// The forces at every sample of a motion, and their derivatives: for each coordinate the columns of
-/// [`ForceSample::write_row`].
+/// The forces at every sample of a motion, and their derivatives: columns for each coordinate, one for
+/// each [`ForceColumn`].
 #[derive(Clone, Debug)]
 pub struct SampledForces {
     coordinates: usize,

@@ -22,7 +22,7 @@ pub struct SampledFunctions<const N: usize> {
     functions: CompiledFunctions<N>,
     places: usize,
     /// For each place of the list of operations that of its column.
-    columns: Vec<Column>,
+    columns: Vec<ColumnPlace>,
     /// The columns that never change, one behind the other.
     fixed: Vec<f64>,
     /// The indices of the operations whose values change, in order.
@@ -31,9 +31,9 @@ pub struct SampledFunctions<const N: usize> {
     moving_columns: usize,
 }
 
-/// The column of a value: its first place among those that never change, or among the others.
+/// The first place of the column of a value, among those that never change or among the others.
 #[derive(Clone, Copy, Debug)]
-enum Column {
+enum ColumnPlace {
     Fixed(usize),
     Moving(usize),
 }
@@ -63,7 +63,7 @@ impl<const N: usize> SampledFunctions<N> {
         for (index, instruction) in list.instructions.iter().enumerate() {
             let operands = instruction.operands();
             let columns = operands.map(|place| sampled.columns[place]);
-            match columns.iter().all(|column| matches!(column, Column::Fixed(_))) {
+            match columns.iter().all(|column| matches!(column, ColumnPlace::Fixed(_))) {
                 true => {
                     let mut values = vec![0.0; places];
                     instruction.run_columns(|place| sampled.values_at(place, &[]), &mut values);
@@ -79,21 +79,21 @@ impl<const N: usize> SampledFunctions<N> {
     }
 
     fn add_fixed(&mut self, values: &[f64]) {
-        self.columns.push(Column::Fixed(self.fixed.len()));
+        self.columns.push(ColumnPlace::Fixed(self.fixed.len()));
         self.fixed
             .extend(values.iter().copied().chain(std::iter::repeat(f64::NAN)).take(self.places));
     }
 
     fn add_moving(&mut self) {
-        self.columns.push(Column::Moving(self.moving_columns * self.places));
+        self.columns.push(ColumnPlace::Moving(self.moving_columns * self.places));
         self.moving_columns += 1;
     }
 
     /// The column of a place of the list, of which `moving` has those that change.
     fn values_at<'a>(&'a self, place: usize, moving: &'a [f64]) -> &'a [f64] {
         match self.columns[place] {
-            Column::Fixed(first) => &self.fixed[first..][..self.places],
-            Column::Moving(first) => &moving[first..][..self.places],
+            ColumnPlace::Fixed(first) => &self.fixed[first..][..self.places],
+            ColumnPlace::Moving(first) => &moving[first..][..self.places],
         }
     }
 
@@ -104,7 +104,7 @@ impl<const N: usize> SampledFunctions<N> {
         values.clear();
         values.resize(self.moving_columns * self.places, f64::NAN);
         for (argument, given) in arguments {
-            if let Some(Column::Moving(first)) = self.columns.get(*argument) {
+            if let Some(ColumnPlace::Moving(first)) = self.columns.get(*argument) {
                 let column = values[*first..][..self.places].iter_mut();
                 column.zip(*given).for_each(|(value, given)| *value = *given);
             }
@@ -112,7 +112,7 @@ impl<const N: usize> SampledFunctions<N> {
         let list = &self.functions.list;
         let begin = list.argument_count + list.constants.len();
         for index in &self.moving {
-            if let Column::Moving(first) = self.columns[begin + index] {
+            if let ColumnPlace::Moving(first) = self.columns[begin + index] {
                 let (before, after) = values.split_at_mut(first);
                 let column = |place: usize| self.values_at(place, before);
                 list.instructions[*index].run_columns(column, &mut after[..self.places]);

@@ -37,11 +37,11 @@ type Terms = Vec<(usize, f64)>;
 /// The coefficients of the pair.
 struct Coefficients {
     nodes: [f64; ALL_STAGES],
-    /// Those of each stage.
+    /// The coefficients of each stage.
     stages: Vec<Terms>,
     high: Terms,
     low: Terms,
-    /// Those of the stages in the interpolant, a row for each power of the fraction of the step, from 1 to 9.
+    /// The coefficients of the stages in the interpolant, a row for each power of the fraction of the step, from 1 to 9.
     inside: [[f64; ALL_STAGES]; ORDER],
 }
 
@@ -80,7 +80,7 @@ pub(super) struct VernerSteps<Y: StateVector> {
     stages: Vec<f64>,
     /// Values at which rates are evaluated, and the rates.
     scratch: [Y; 2],
-    /// The same of the first values, behind the step.
+    /// The first values at which rates are evaluated behind the step, and the rates.
     leading: [Y; 2],
     rejections: usize,
     status: Status<f64, Y>,

@@ -46,8 +46,8 @@ type Symbols = Polynomials<Integers>;
 /// as fast again with three to the second order, and as fast with two to the sixth.
 const FEW: usize = WIDTH;
 
-/// The same for one word: with three symbols, ten points take two thirds of the time of primes, and
-/// fifteen three quarters.
+/// Number of points up to which one word is tried: with three symbols, ten points take two thirds of
+/// the time of primes, and fifteen three quarters.
 const MORE: usize = 2 * WIDTH;
 
 /// Number of points times orders up to which one thread is faster than starting several.

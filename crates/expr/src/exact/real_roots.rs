@@ -14,6 +14,7 @@ use num_integer::Integer as _;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
 use super::rational::{ratio, to_f64};
+use super::residue::Modulus;
 use super::{Integer, Rational};
 
 /// A positive root.
@@ -157,32 +158,24 @@ pub(super) fn gcd(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
 /// Modulo a prime that divides no leading coefficient the degree is not lower than that of the true
 /// divisor, so that what divides both is it.
 fn gcd_by_residues(a: &[Integer], b: &[Integer]) -> Option<Vec<Integer>> {
-    /// A Mersenne prime.
-    const PRIME: u64 = (1 << 61) - 1;
-    let residue = |number: &Integer| number.remainder(PRIME).rem_euclid(i128::from(PRIME)) as u64;
-    let times = |x: u64, y: u64| (u128::from(x) * u128::from(y) % u128::from(PRIME)) as u64;
-    // Fermat: x^(p - 2) x = 1.
-    let inverse = |x: u64| {
-        let (mut power, mut square, mut left) = (1, x, PRIME - 2);
-        while left > 0 {
-            power = if left % 2 == 1 { times(power, square) } else { power };
-            (square, left) = (times(square, square), left / 2);
-        }
-        power
-    };
+    /// The largest prime below 2^59, and the radix of its multiplication.
+    const PRIME: u64 = (1 << 59) - 55;
+    const RADIX: u32 = 62;
+    let modulus = Modulus::new(PRIME, RADIX);
     let residues = |list: &[Integer]| -> Option<Vec<u64>> {
-        let all: Vec<u64> = list.iter().map(residue).collect();
+        let all: Vec<u64> = list.iter().map(|number| modulus.integer(number)).collect();
         all.last().is_some_and(|leading| *leading != 0).then_some(all)
     };
     let (mut shared, mut rest) = (residues(a)?, residues(b)?);
     while !rest.is_empty() {
-        let unit = inverse(*rest.last()?);
-        rest.iter_mut().for_each(|c| *c = times(*c, unit));
+        let unit = modulus.inverse(*rest.last()?);
+        rest.iter_mut().for_each(|c| *c = modulus.product(*c, unit));
         while shared.len() >= rest.len() {
             let shift = shared.len() - rest.len();
-            let factor = PRIME - *shared.last()?;
+            let factor = *shared.last()?;
             for (k, c) in rest.iter().enumerate() {
-                shared[shift + k] = (shared[shift + k] + times(factor, *c)) % PRIME;
+                let taken = modulus.product(factor, *c);
+                shared[shift + k] = modulus.difference(shared[shift + k], taken);
             }
             while shared.last() == Some(&0) {
                 shared.pop();
@@ -194,13 +187,14 @@ fn gcd_by_residues(a: &[Integer], b: &[Integer]) -> Option<Vec<Integer>> {
         return Some(vec![Integer::one()]);
     }
     // The leading coefficient of the true divisor divides that of both.
-    let leading = residue(&a.last()?.gcd(b.last()?));
+    let leading = modulus.integer(&a.last()?.gcd(b.last()?));
     let centred = |c: u64| match c > PRIME / 2 {
         true => Integer::from(c) - Integer::from(PRIME),
         false => Integer::from(c),
     };
-    let unit = times(leading, inverse(*shared.last()?));
-    let found = without_content(shared.iter().map(|c| centred(times(*c, unit))).collect());
+    let unit = modulus.product(leading, modulus.inverse(*shared.last()?));
+    let plain = |c: &u64| modulus.plain(modulus.product(*c, unit));
+    let found = without_content(shared.iter().map(|c| centred(plain(c))).collect());
     (is_divisor(&found, a) && is_divisor(&found, b)).then_some(found)
 }
 
@@ -458,7 +452,7 @@ mod tests {
         let parts = [
             vec![ratio(-3, 7), ratio(2, 5), ratio(1, 1)],
             vec![large.clone(), -large, ratio(4, 3)],
-            vec![ratio(1, 1), ratio((1 << 61) - 1, 1)],
+            vec![ratio(1, 1), ratio((1 << 59) - 55, 1)],
         ];
         for shared in [&polynomial(&[5]), &parts[0], &parts[1], &parts[2]] {
             let [a, b] = [[-2, 0, 3], [7, 1, -4]].map(|other| product(shared, &polynomial(&other)));

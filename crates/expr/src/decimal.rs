@@ -141,14 +141,37 @@ pub fn not_above_typed(value: f64) -> f64 {
 /// more than forty significant digits.
 pub fn exact_decimal(value: &Rational) -> Option<String> {
     const MOST: usize = 40;
-    (1..=MOST).find(|digits| neighbours(value, *digits)[0] == *value).map(|digits| {
-        let (mantissa, power) = scientific(value, digits);
-        let exponent = power + digits as i32 - 1;
-        match (-4..15).contains(&exponent) {
-            true => fixed(value, usize::try_from(-power).unwrap_or(0)),
-            false => in_powers(value, &mantissa, power),
-        }
+    let ten = Integer::from(10);
+    let mut rest = value.denom().clone();
+    let decimals = without_factors(&mut rest, 5).max(without_factors(&mut rest, 2));
+    if rest != Integer::from(1) {
+        return None;
+    }
+    let mut mantissa =
+        (value * Pow::pow(Rational::from_integer(ten.clone()), decimals)).to_integer();
+    let mut power = -decimals;
+    // A zero at the end of the digits needs a whole number.
+    while power >= 0 && !mantissa.is_zero() && (&mantissa % &ten).is_zero() {
+        mantissa /= &ten;
+        power += 1;
+    }
+    let digits = mantissa.abs().to_string().len();
+    let exponent = power + digits as i32 - 1;
+    (digits <= MOST).then(|| match (-4..15).contains(&exponent) {
+        true => fixed(value, usize::try_from(-power).unwrap_or(0)),
+        false => in_powers(value, &mantissa, power),
     })
+}
+
+/// Divides a number by a factor as often as it goes, and counts how often that is.
+fn without_factors(number: &mut Integer, factor: u32) -> i32 {
+    let factor = Integer::from(factor);
+    let mut count = 0;
+    while (&*number % &factor).is_zero() {
+        *number /= &factor;
+        count += 1;
+    }
+    count
 }
 
 /// Returns a fraction with at most this many decimals, without trailing zeros; with fifteen
@@ -189,10 +212,8 @@ fn fixed(value: &Rational, decimals: usize) -> String {
 /// Whether a fraction is a terminating decimal.
 pub fn ends(value: &Rational) -> bool {
     let mut rest = value.denom().clone();
-    for factor in [2, 5].map(Integer::from) {
-        while (&rest % &factor).is_zero() {
-            rest /= &factor;
-        }
+    for factor in [5, 2] {
+        without_factors(&mut rest, factor);
     }
     rest == Integer::from(1)
 }
@@ -213,21 +234,15 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
         return None;
     }
     let ten = Integer::from(10);
-    let has_factor = |number: &Integer, factor: &Integer| (number % factor).is_zero();
     // The fraction is m/10^k if its denominator is 2^a 5^b, with k the larger of a and b.
     let mut rest = value.denom().clone();
     let mut decimals: i32 = 0;
-    for factor in [5, 2].map(Integer::from) {
+    for factor in [5, 2] {
         // More than 25 twos beyond the fives are too many: m has a factor 5 for each of them.
-        if rest.bits() > decimals.unsigned_abs() as u64 + 26 && factor == Integer::from(2) {
+        if rest.bits() > decimals.unsigned_abs() as u64 + 26 && factor == 2 {
             return None;
         }
-        let mut count = 0;
-        while has_factor(&rest, &factor) {
-            rest /= &factor;
-            count += 1;
-        }
-        decimals = decimals.max(count);
+        decimals = decimals.max(without_factors(&mut rest, factor));
     }
     if rest != Integer::from(1) {
         return None;
@@ -240,7 +255,7 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
     if 301 * mantissa.bits().saturating_sub(1) / 1000 >= DIGITS as u64 + halvings {
         return None;
     }
-    while decimals <= 0 && has_factor(&mantissa, &ten) && !mantissa.is_zero() {
+    while decimals <= 0 && (&mantissa % &ten).is_zero() && !mantissa.is_zero() {
         mantissa /= &ten;
         decimals -= 1;
     }

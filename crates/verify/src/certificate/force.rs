@@ -69,7 +69,8 @@ fn times<S: Analytic>(series: S, coefficient: &Rational) -> S {
 /// The highest whole power that is computed by products.
 const HIGHEST_POWER: u32 = 200;
 
-fn power<S: Analytic>(base: &S, exponent: &Rational) -> Option<S> {
+/// A rational power, of a positive series where it is not whole; `None` if it is not proved to exist.
+pub(super) fn power<S: Analytic>(base: &S, exponent: &Rational) -> Option<S> {
     let times = exponent.numer().abs().to_u32().filter(|times| *times <= HIGHEST_POWER)?;
     let degree = exponent.denom().to_u32().filter(|degree| *degree <= HIGHEST_POWER)?;
     match (degree, exponent.is_negative()) {

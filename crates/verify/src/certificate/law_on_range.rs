@@ -36,7 +36,8 @@ mod mode;
 use num_traits::{One as _, Signed as _, Zero as _};
 
 use super::force::NoValue;
-use super::fourier_series::WORKING;
+use super::fourier_series::{FourierSeries, WORKING};
+use super::largest_value::largest_value;
 use super::{CheckError, NotCertified, coordinate};
 use crate::decimal::decimal;
 use crate::exact::ball::Ball;
@@ -49,7 +50,7 @@ use crate::symbol::Symbol;
 use contact::ContactMean;
 pub use contact::HuntCrossleyForce;
 use inverse_frequency::{ForceOnRange, PiecePolynomial, Scale, TruthPiece};
-use jet::{Jet, ScaledJet, Variable, law_along, widened};
+use jet::{Jet, LawValues, Scaled, Variable, law_along, line, widened};
 pub use mode::ModeBranch;
 
 /// The quantity that a law gives.
@@ -505,19 +506,19 @@ fn not_above(value: &Rational) -> f64 {
 }
 
 /// `law/truth` from `1/omega` on an interval of the variable; `None` where it has no value.
-fn quotient(
+fn quotient<V: LawValues>(
     certificate: &LawCertificate,
     scale: Scale,
-    inverse_frequency: &Jet,
-    variable: &Variable,
-) -> Result<Option<Jet>, LawNotProved> {
+    inverse_frequency: &V,
+    variable: &Variable<V>,
+) -> Result<Option<V>, LawNotProved> {
     let law = law_along(&certificate.law, certificate.variable, variable, scale.is_far)?;
     let power = certificate.quantity.power();
     // q = law (1/omega)^n, with (1/omega) = r^(d/2) I.
     let exponent = Rational::new((i64::from(scale.power) * i64::from(power)).into(), 2.into());
     let whole = Rational::from_integer(power.into());
     let Some(truth) = inverse_frequency.to_power(&whole) else { return Ok(None) };
-    let scaled = ScaledJet { power: &law.power + exponent, jet: law.jet.times(&truth) };
+    let scaled = Scaled { power: &law.power + exponent, values: law.values.times(&truth) };
     match scaled.power.is_negative() && !variable.from.is_positive() {
         true => Err(LawNotProved::Growth(certificate.variable)),
         false => Ok(scaled.unscaled(variable)),
@@ -544,7 +545,13 @@ impl TruthPiece {
             if tried % 256 == 0 && supervision.interrupt.is_requested() {
                 return Err(LawNotProved::Stopped);
             }
-            match self.error_between(certificate, [&low, &high]) {
+            let by_series = self.error_along(certificate, [&low, &high]);
+            let error = match by_series {
+                // A law without a series, as a root of the variable from zero on, has values.
+                Err(LawNotProved::NoValue(_)) => self.error_between(certificate, [&low, &high]),
+                by_series => by_series,
+            };
+            match error {
                 Ok(error) if error <= bound => largest = largest.max(error),
                 Err(error @ LawNotProved::Growth(_)) => return Err(error),
                 Err(error) if depth == DEEPEST || tried > MOST => return Err(error),
@@ -563,6 +570,22 @@ impl TruthPiece {
         Ok(largest)
     }
 
+    /// An upper bound of the error between two values of e, from the series of Chebyshev of `law/truth`.
+    fn error_along(
+        &self,
+        certificate: &LawCertificate,
+        [low, high]: [&Rational; 2],
+    ) -> Result<f64, LawNotProved> {
+        let no_value = || LawNotProved::NoValue(certificate.law.to_string());
+        let [from, to] = [low, high].map(|e| &self.middle + &self.half * e);
+        let e = line(low, high);
+        let mut variable = Variable::along(&from, &to);
+        variable.restitution = self.restitution.as_ref().map(|own| own.along(&e));
+        let quotient = quotient(certificate, self.scale, &self.truth.along(&e), &variable)?;
+        let quotient = quotient.ok_or_else(no_value)?;
+        Ok(largest_value(&quotient.difference(&FourierSeries::integer(1))).value())
+    }
+
     /// An upper bound of the error between two values of e, by the mean value form or from the values on
     /// the whole interval.
     fn error_between(
@@ -572,7 +595,7 @@ impl TruthPiece {
     ) -> Result<f64, LawNotProved> {
         let place = |e: &Rational| &self.middle + &self.half * e;
         let middle = (low + high) / Integer::from(2);
-        let of = |mut variable: Variable, e: &Ball| {
+        let of = |mut variable: Variable<Jet>, e: &Ball| {
             let truth = self.truth.at(e, &self.half);
             // The restitution is some number within the remainder of its polynomial.
             variable.restitution = self.restitution.as_ref().map(|own| own.within(e, &self.half));

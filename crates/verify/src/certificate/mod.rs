@@ -32,6 +32,7 @@ mod force;
 mod formula;
 mod fourier_series;
 mod impact;
+mod largest_value;
 mod law;
 mod law_on_range;
 mod modes;

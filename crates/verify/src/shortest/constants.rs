@@ -8,7 +8,7 @@
 use num_traits::{One as _, Zero as _};
 
 use super::formula::{length, text_of_number};
-use super::minimax::{Fit, MOST_CONSTANTS, QuotientOfSums};
+use super::minimax::{Fit, FitSteps, MOST_CONSTANTS, QuotientOfSums};
 use crate::decimal::{neighbours, rounded_fraction};
 use crate::exact::Rational;
 use crate::exact::rational::{from_f64, ratio, to_f64};
@@ -22,7 +22,7 @@ const MOST_DIGITS: usize = 12;
 const FOLLOWED: usize = 4;
 
 /// Steps of a fit within the search.
-const STEPS: usize = 12;
+const STEPS: FitSteps = FitSteps::all(12);
 
 /// Constants that are short, in the order of the quotient of sums.
 #[derive(Clone, Debug)]
@@ -152,7 +152,7 @@ fn scaled(sums: &QuotientOfSums, best: &Fit, most_digits: usize) -> Vec<(usize, 
     }
     let mut whole = vec![];
     for partial in partials {
-        let factor = partial.fit.constants[0].powf(sums.power);
+        let factor = partial.fit.constants[0].powf(sums.power.exponent());
         for (factor, digits) in short_numbers(factor, best.error) {
             // A factor of one is not written.
             let digits = partial.digits + if factor.is_one() { 0 } else { digits };
@@ -160,7 +160,7 @@ fn scaled(sums: &QuotientOfSums, best: &Fit, most_digits: usize) -> Vec<(usize, 
                 continue;
             }
             let mut constants = partial.fit.constants;
-            let scale = to_f64(&factor).powf(1.0 / sums.power) / constants[0];
+            let scale = to_f64(&factor).powf(1.0 / sums.power.exponent()) / constants[0];
             constants[..numerators].iter_mut().for_each(|constant| *constant *= scale);
             let error = sums.largest_error(&constants[..count]);
             let mut values = vec![Rational::one()];
@@ -176,7 +176,7 @@ fn fit_with_ratios(sums: &QuotientOfSums, chosen: &[Rational]) -> Option<Fit> {
     let numerators = sums.numerator.len();
     let ratios: Vec<f64> = chosen.iter().map(to_f64).collect();
     let own = ratios.len().min(numerators - 1);
-    let places = sums.target.len();
+    let places = sums.places();
     let head: Vec<f64> = (0..places)
         .map(|place| {
             let rest = (0..own).map(|i| ratios[i] * sums.numerator[i + 1][place]);
@@ -189,7 +189,6 @@ fn fit_with_ratios(sums: &QuotientOfSums, chosen: &[Rational]) -> Option<Fit> {
     let reduced = QuotientOfSums {
         numerator,
         denominator: sums.denominator.clone(),
-        target: sums.target,
         power: sums.power,
         tie: None,
     };

@@ -11,7 +11,7 @@
 use num_traits::{One as _, Zero as _};
 
 use super::formula::Formula;
-use super::minimax::{Fit, QuotientOfSums};
+use super::minimax::{Fit, FitSteps, MOST_CONSTANTS, PowerOfQuotient, QuotientOfSums};
 use crate::exact::Rational;
 use crate::exact::rational::{ratio, to_f64};
 use crate::parallel::par_map;
@@ -83,21 +83,47 @@ const WORSE: f64 = 3.0;
 /// Steps of the fit of a structure.
 const STEPS: usize = 6;
 
+/// The ratio to the error up to which structures are kept from which on the first steps decide: the others
+/// gain less than that.
+const GIVEN_UP: f64 = 10.0;
+
+/// The truth as a power n of z, and the functions over z.
+pub(super) struct RelativeFunctions {
+    power: Rational,
+    /// `1/z` at the places.
+    one: Vec<f64>,
+    functions: Vec<Vec<f64>>,
+}
+
+impl RelativeFunctions {
+    /// The functions for all powers with which z has values.
+    pub(super) fn of_all_powers(functions: &[ShortFunction], truth: &[f64]) -> Vec<Self> {
+        let of_power = |power: Rational| {
+            let exponent = -1.0 / to_f64(&power);
+            let one: Vec<f64> = truth.iter().map(|value| value.powf(exponent)).collect();
+            if !one.iter().all(|value| value.is_normal()) {
+                return None;
+            }
+            let over = |function: &ShortFunction| {
+                function.values.iter().zip(&one).map(|(value, one)| value * one).collect()
+            };
+            let functions = functions.iter().map(over).collect();
+            Some(Self { power, one, functions })
+        };
+        powers().into_iter().filter_map(of_power).collect()
+    }
+}
+
 impl Structure {
-    /// The sums with values at the places of a fit.
+    /// The sums with values at the places of a fit; `None` if the power has none there.
     pub(super) fn sums<'a>(
         &self,
         functions: &'a [ShortFunction],
-        one: &'a [f64],
-        target: &'a [f64],
-    ) -> QuotientOfSums<'a> {
-        let values = |chosen: &[usize]| -> Vec<&'a [f64]> {
-            chosen.iter().map(|&i| functions[i].values.as_slice()).collect()
-        };
-        let mut numerator: Vec<&[f64]> = if self.has_constant { vec![one] } else { vec![] };
-        numerator.extend(values(&self.numerator));
-        let denominator = values(&self.denominator);
-        QuotientOfSums { numerator, denominator, target, power: to_f64(&self.power), tie: None }
+        relative: &'a [RelativeFunctions],
+    ) -> Option<QuotientOfSums<'a>> {
+        let relative = relative.iter().find(|own| own.power == self.power)?;
+        let choice = (self.has_constant, &self.numerator[..], &self.denominator[..]);
+        Some(sums(choice, functions, relative, PowerOfQuotient::new(&self.power)))
     }
 
     /// The constants with which the series of the law agrees with this series of z: an offset and a
@@ -215,53 +241,92 @@ fn sum(mut terms: Vec<Formula>) -> Formula {
     terms.fold(first, Formula::plus)
 }
 
-/// The structures with the smallest errors by length, for truths y at the places of the functions; where a
-/// growth is given, of those that grow as that power of the variable.
+/// The quotient of sums of a choice of functions: whether it has a constant, and the numbers of the others.
+fn sums<'a>(
+    (has_constant, numerator, denominator): (bool, &[usize], &[usize]),
+    functions: &'a [ShortFunction],
+    relative: &'a RelativeFunctions,
+    power: PowerOfQuotient,
+) -> QuotientOfSums<'a> {
+    let one = has_constant.then_some(relative.one.as_slice());
+    let above = numerator.iter().map(|&i| relative.functions[i].as_slice());
+    let below = denominator.iter().map(|&i| functions[i].values.as_slice());
+    QuotientOfSums {
+        numerator: one.into_iter().chain(above).collect(),
+        denominator: below.collect(),
+        power,
+        tie: None,
+    }
+}
+
+/// The structures with the smallest errors by length, for functions over truths; where a growth is given, of
+/// those that grow as that power of the variable.
 pub(super) fn structures(
     functions: &[ShortFunction],
-    truth: &[f64],
+    relative: &[RelativeFunctions],
     growth: Option<f64>,
     longest: usize,
 ) -> Vec<Structure> {
-    let one = vec![1.0; truth.len()];
     let choices = choices(functions);
+    let blocks: Vec<&[Choice]> = choices.chunks(512).collect();
     let mut found: Vec<Structure> = vec![];
-    for power in powers() {
-        let exponent = 1.0 / to_f64(&power);
-        let target: Vec<f64> = truth.iter().map(|value| value.powf(exponent)).collect();
-        if !target.iter().all(|value| value.is_normal()) {
-            continue;
-        }
-        let cost = Formula::integer(7).power(&power).length() - 1;
-        let blocks: Vec<&[Choice]> = choices.chunks(512).collect();
+    for relative in relative {
+        let power = &relative.power;
+        let quotient = PowerOfQuotient::new(power);
+        let cost = Formula::integer(7).power(power).length() - 1;
+        let known = LeastErrors::of(&found, longest);
         let fitted = par_map(&blocks, |block| {
+            let mut least = known.clone();
             let fits = block.iter().filter_map(|choice| {
-                if power < ratio(0, 1) && !choice.denominator.is_empty() {
+                if *power < ratio(0, 1) && !choice.denominator.is_empty() {
                     return None;
                 }
                 let length = cost + choice.length(functions);
-                let grows = to_f64(&power) * choice.growth(functions);
+                let grows = to_f64(power) * choice.growth(functions);
                 if length > longest || growth.is_some_and(|asked| !is_same_growth(grows, asked)) {
                     return None;
                 }
-                let mut structure = Structure {
+                let Choice { has_constant, numerator, denominator } = choice;
+                let own = (*has_constant, &numerator[..], &denominator[..]);
+                let sums = sums(own, functions, relative, quotient);
+                let given_up = GIVEN_UP * WORSE * least.up_to(length);
+                let steps = FitSteps { count: STEPS, given_up };
+                let fit = sums.minimax(&[None; MOST_CONSTANTS], steps)?;
+                least.insert(length, fit.error);
+                Some(Structure {
                     power: power.clone(),
-                    has_constant: choice.has_constant,
-                    numerator: choice.numerator.clone(),
-                    denominator: choice.denominator.clone(),
+                    has_constant: *has_constant,
+                    numerator: numerator.clone(),
+                    denominator: denominator.clone(),
                     length,
-                    fit: Fit { constants: [0.0; super::minimax::MOST_CONSTANTS], error: 0.0 },
-                };
-                let sums = structure.sums(functions, &one, &target);
-                let free = vec![None; sums.count()];
-                structure.fit = sums.minimax(&free, STEPS)?;
-                Some(structure)
+                    fit,
+                })
             });
             thinned(fits.collect())
         });
         found.extend(fitted.into_iter().flatten());
     }
     thinned(found)
+}
+
+/// The least error of structures up to each length.
+#[derive(Clone)]
+struct LeastErrors(Vec<f64>);
+
+impl LeastErrors {
+    fn of(found: &[Structure], longest: usize) -> Self {
+        let mut least = Self(vec![f64::INFINITY; longest + 1]);
+        found.iter().for_each(|structure| least.insert(structure.length, structure.fit.error));
+        least
+    }
+
+    fn up_to(&self, length: usize) -> f64 {
+        self.0[length]
+    }
+
+    fn insert(&mut self, length: usize, error: f64) {
+        self.0[length..].iter_mut().for_each(|least| *least = error.min(*least));
+    }
 }
 
 /// The best structures of each length.

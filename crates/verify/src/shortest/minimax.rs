@@ -17,19 +17,22 @@
 //! Scientific Computing 42 (2020), A3157-A3179. A. Bjoerck: Numerical Methods for Least Squares Problems,
 //! SIAM 1996, section 6.6.5.
 
+use pulp::{Arch, Simd, WithSimd};
+
+use crate::exact::Rational;
+use crate::exact::rational::to_f64;
+
 /// The largest number of constants.
 pub(super) const MOST_CONSTANTS: usize = 6;
 
 /// A quotient of sums with constants to be found.
 pub(super) struct QuotientOfSums<'a> {
-    /// The functions of the numerator, at the places.
+    /// The functions of the numerator over z, at the places.
     pub(super) numerator: Vec<&'a [f64]>,
     /// The functions of the denominator, beside one.
     pub(super) denominator: Vec<&'a [f64]>,
-    /// z at the places.
-    pub(super) target: &'a [f64],
     /// The power n to which the quotient is taken.
-    pub(super) power: f64,
+    pub(super) power: PowerOfQuotient,
     /// The conditions that the constants fulfil; `None` where each is free.
     pub(super) tie: Option<&'a Tie>,
 }
@@ -48,6 +51,69 @@ pub(super) struct Fit {
     pub(super) error: f64,
 }
 
+/// The extent of a search for constants.
+#[derive(Clone, Copy)]
+pub(super) struct FitSteps {
+    /// The number of steps.
+    pub(super) count: usize,
+    /// The error beyond which the search is given up after the second step.
+    pub(super) given_up: f64,
+}
+
+impl FitSteps {
+    /// So many steps.
+    pub(super) const fn all(count: usize) -> Self {
+        Self { count, given_up: f64::INFINITY }
+    }
+}
+
+/// A power of positive numbers, many at a time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PowerOfQuotient {
+    exponent: f64,
+    /// Square roots and then products, where that is the power.
+    roots_and_products: Option<(u32, u32)>,
+}
+
+impl PowerOfQuotient {
+    pub(super) fn new(exponent: &Rational) -> Self {
+        let exponent = to_f64(exponent);
+        let whole = |roots: &u32| {
+            let times = exponent.abs() * f64::from(1_u32 << roots);
+            (times.fract() == 0.0 && times <= 4.0).then_some((*roots, times as u32))
+        };
+        Self { exponent, roots_and_products: (0..=3).find_map(|roots| whole(&roots)) }
+    }
+
+    /// n.
+    pub(super) const fn exponent(self) -> f64 {
+        self.exponent
+    }
+
+    /// Replaces numbers by their powers.
+    #[inline(always)]
+    fn replace(self, values: &mut [f64]) {
+        let Some((roots, times)) = self.roots_and_products else {
+            return values.iter_mut().for_each(|value| *value = value.powf(self.exponent));
+        };
+        for _ in 0..roots {
+            values.iter_mut().for_each(|value| *value = value.sqrt());
+        }
+        match times {
+            2 => values.iter_mut().for_each(|value| *value *= *value),
+            3 => values.iter_mut().for_each(|value| *value *= *value * *value),
+            4 => values.iter_mut().for_each(|value| {
+                *value *= *value;
+                *value *= *value;
+            }),
+            _ => {}
+        }
+        if self.exponent < 0.0 {
+            values.iter_mut().for_each(|value| *value = 1.0 / *value);
+        }
+    }
+}
+
 impl QuotientOfSums<'_> {
     /// The number of constants that are free.
     pub(super) fn count(&self) -> usize {
@@ -57,141 +123,162 @@ impl QuotientOfSums<'_> {
         }
     }
 
+    /// The number of places.
+    pub(super) fn places(&self) -> usize {
+        self.numerator
+            .iter()
+            .chain(&self.denominator)
+            .map(|values| values.len())
+            .next()
+            .unwrap_or(0)
+    }
+
     /// The largest error with these constants; infinite where the denominator changes its sign, or the
     /// quotient is not positive.
     pub(super) fn largest_error(&self, constants: &[f64]) -> f64 {
-        let mut largest = 0.0_f64;
-        for place in 0..self.target.len() {
-            let error = self.error_at(place, constants).abs();
-            if !error.is_finite() {
-                return f64::INFINITY;
-            }
-            largest = largest.max(error);
+        let mut free = [0.0; MOST_CONSTANTS];
+        free[..constants.len()].copy_from_slice(constants);
+        let mut errors = vec![0.0; 2 * self.places()];
+        let (below, errors) = errors.split_at_mut(self.places());
+        self.errors(&free, below, errors);
+        match errors.iter().all(|error| error.is_finite()) {
+            true => errors.iter().fold(0.0, |largest, error| error.abs().max(largest)),
+            false => f64::INFINITY,
         }
-        largest
     }
 
-    fn sums_at(&self, place: usize, constants: &[f64]) -> (f64, f64) {
+    /// All constants, those that are tied to the free ones as well.
+    #[inline(always)]
+    fn all_constants(&self, free: &[f64; MOST_CONSTANTS]) -> [f64; MOST_CONSTANTS] {
+        let Some(tie) = self.tie else { return *free };
         let mut all = [0.0; MOST_CONSTANTS];
-        let constants = match self.tie {
-            None => constants,
-            Some(tie) => {
-                for (own, (offset, row)) in all.iter_mut().zip(tie.offset.iter().zip(&tie.matrix)) {
-                    *own = row.iter().zip(constants).fold(*offset, |sum, (m, c)| sum + m * c);
-                }
-                &all
+        for (own, (offset, row)) in all.iter_mut().zip(tie.offset.iter().zip(&tie.matrix)) {
+            *own = row.iter().zip(free).fold(*offset, |sum, (m, c)| sum + m * c);
+        }
+        all
+    }
+
+    /// The denominators, and `(approximation/z)^n - 1`; NaN where that is none.
+    #[inline(always)]
+    fn errors(&self, free: &[f64; MOST_CONSTANTS], below: &mut [f64], errors: &mut [f64]) {
+        let constants = self.all_constants(free);
+        let (above, divisor) = constants.split_at(self.numerator.len());
+        let add = |sums: &mut [f64], functions: &[&[f64]], constants: &[f64]| {
+            for (values, constant) in functions.iter().zip(constants) {
+                sums.iter_mut().zip(*values).for_each(|(sum, value)| *sum += constant * value);
             }
         };
-        let sum = |functions: &[&[f64]], constants: &[f64]| -> f64 {
-            functions.iter().zip(constants).map(|(values, c)| c * values[place]).sum()
-        };
-        let above = sum(&self.numerator, constants);
-        (above, 1.0 + sum(&self.denominator, &constants[self.numerator.len()..]))
-    }
-
-    /// `(approximation/z)^n - 1`; NaN where there is none.
-    fn error_at(&self, place: usize, constants: &[f64]) -> f64 {
-        let (above, below) = self.sums_at(place, constants);
-        let ratio = above / (below * self.target[place]);
-        match below > 0.0 && ratio > 0.0 {
-            true => ratio.powf(self.power) - 1.0,
-            false => f64::NAN,
+        errors.fill(0.0);
+        add(errors, &self.numerator, above);
+        below.fill(1.0);
+        add(below, &self.denominator, divisor);
+        for (error, below) in errors.iter_mut().zip(&*below) {
+            let ratio = *error / below;
+            *error = if *below > 0.0 && ratio > 0.0 { ratio } else { f64::NAN };
         }
+        self.power.replace(errors);
+        errors.iter_mut().for_each(|error| *error -= 1.0);
     }
 
-    /// The constants with about the smallest largest error, in so many steps. Those that are fixed keep
-    /// their values.
-    pub(super) fn minimax(&self, fixed: &[Option<f64>], steps: usize) -> Option<Fit> {
-        let places = self.target.len();
-        let free: Vec<usize> = (0..self.count()).filter(|&i| fixed[i].is_none()).collect();
+    /// The constants with about the smallest largest error. Those that are fixed keep their values.
+    pub(super) fn minimax(&self, fixed: &[Option<f64>], steps: FitSteps) -> Option<Fit> {
+        Arch::new().dispatch(Minimax { sums: self, fixed, steps })
+    }
+}
+
+/// A search of constants, compiled for every set of vector instructions.
+struct Minimax<'a> {
+    sums: &'a QuotientOfSums<'a>,
+    fixed: &'a [Option<f64>],
+    steps: FitSteps,
+}
+
+impl WithSimd for Minimax<'_> {
+    type Output = Option<Fit>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Option<Fit> {
+        let Self { sums, fixed, steps } = self;
+        let (count, places) = (sums.count(), sums.places());
+        let free: Vec<usize> = (0..count).filter(|&i| fixed[i].is_none()).collect();
         let mut constants = [0.0; MOST_CONSTANTS];
         for (constant, value) in constants.iter_mut().zip(fixed) {
             *constant = value.unwrap_or(0.0);
         }
         if free.is_empty() {
-            return Some(Fit { constants, error: self.largest_error(&constants) });
+            return Some(Fit { constants, error: sums.largest_error(&constants[..count]) });
         }
-        let numerators = self.numerator.len();
-        let own_column = |i: usize, place: usize| match i < numerators {
-            true => self.numerator[i][place],
-            false => -self.target[place] * self.denominator[i - numerators][place],
-        };
-        let column = |i: usize, place: usize| match self.tie {
-            None => own_column(i, place),
-            Some(tie) => {
-                let rows = tie.matrix.iter().enumerate();
-                rows.map(|(k, row)| row[i] * own_column(k, place)).sum()
-            }
-        };
-        let offset = |place: usize| -> f64 {
-            let offsets = self.tie.iter().flat_map(|tie| tie.offset.iter().enumerate());
-            offsets.map(|(k, offset)| offset * own_column(k, place)).sum()
-        };
-        let mut weights = vec![1.0 / places as f64; places];
-        let mut below = vec![1.0_f64; places];
+        if places == 0 {
+            return None;
+        }
+        // The columns of the problem, those that are fixed and the tied part brought to the right side.
+        let mut numbers = vec![0.0; (count + 5) * places];
+        let (columns, rest) = numbers.split_at_mut(count * places);
+        sums.fill_columns(columns);
+        let columns: Vec<&[f64]> = columns.chunks_exact(places).collect();
+        let (right, rest) = rest.split_at_mut(places);
+        let (below, rest) = rest.split_at_mut(places);
+        let (weights, rest) = rest.split_at_mut(places);
+        let (scaled, errors) = rest.split_at_mut(places);
+        sums.fill_right(right);
+        for (i, column) in columns.iter().enumerate().filter(|(i, _)| fixed[*i].is_some()) {
+            subtract(right, constants[i], column);
+        }
+        weights.fill(1.0 / places as f64);
+        below.fill(1.0);
         let mut best: Option<Fit> = None;
-        for _ in 0..steps {
+        for step in 0..steps.count {
+            // The weights of the squares.
+            for (scaled, (weight, below)) in errors.iter_mut().zip(weights.iter().zip(&*below)) {
+                *scaled = weight / (below * below);
+            }
             let mut matrix = [[0.0; MOST_CONSTANTS + 1]; MOST_CONSTANTS];
-            for place in 0..places {
-                let scale = 1.0 / (below[place] * self.target[place]);
-                let weight = weights[place] * scale * scale;
-                let mut right = self.target[place] - offset(place);
-                let mut row = [0.0; MOST_CONSTANTS];
-                for (i, value) in fixed.iter().enumerate().take(self.count()) {
-                    if let Some(value) = value {
-                        right -= value * column(i, place);
-                    }
+            for (row, &i) in free.iter().enumerate() {
+                multiply(scaled, columns[i], errors);
+                for (column, &j) in free[..=row].iter().enumerate() {
+                    matrix[row][column] = sum_of_products(scaled, columns[j]);
                 }
-                for (entry, &i) in row.iter_mut().zip(&free) {
-                    *entry = column(i, place);
-                }
-                for i in 0..free.len() {
-                    for j in 0..=i {
-                        matrix[i][j] += weight * row[i] * row[j];
-                    }
-                    matrix[i][MOST_CONSTANTS] += weight * row[i] * right;
-                }
+                matrix[row][MOST_CONSTANTS] = sum_of_products(scaled, right);
             }
             if !factor(&mut matrix, free.len()) {
                 break;
             }
-            let right: [f64; MOST_CONSTANTS] = std::array::from_fn(|i| matrix[i][MOST_CONSTANTS]);
-            for (&i, value) in free.iter().zip(substituted(&matrix, free.len(), right)) {
+            let own: [f64; MOST_CONSTANTS] = std::array::from_fn(|i| matrix[i][MOST_CONSTANTS]);
+            for (&i, value) in free.iter().zip(substituted(&matrix, free.len(), own)) {
                 constants[i] = value;
             }
             if best.is_some_and(|best| best.error < SMALL) {
-                let mut right = [0.0; MOST_CONSTANTS];
-                for place in 0..places {
-                    let scale = 1.0 / (below[place] * self.target[place]);
-                    let weight = weights[place] * scale * scale;
-                    let own = (0..self.count()).map(|i| constants[i] * column(i, place));
-                    let left = self.target[place] - offset(place) - own.sum::<f64>();
-                    for (sum, &i) in right.iter_mut().zip(&free) {
-                        *sum += weight * column(i, place) * left;
-                    }
+                scaled.copy_from_slice(right);
+                for &i in &free {
+                    subtract(scaled, constants[i], columns[i]);
                 }
-                for (&i, value) in free.iter().zip(substituted(&matrix, free.len(), right)) {
+                scaled.iter_mut().zip(&*errors).for_each(|(left, weight)| *left *= weight);
+                let mut left = [0.0; MOST_CONSTANTS];
+                for (sum, &i) in left.iter_mut().zip(&free) {
+                    *sum = sum_of_products(scaled, columns[i]);
+                }
+                for (&i, value) in free.iter().zip(substituted(&matrix, free.len(), left)) {
                     constants[i] += value;
                 }
             }
-            let (mut largest, mut total) = (0.0_f64, 0.0);
-            let mut is_defined = true;
-            for place in 0..places {
-                below[place] = self.sums_at(place, &constants).1;
-                let error = self.error_at(place, &constants).abs();
-                is_defined &= error <= f64::MAX;
-                let size = if error <= f64::MAX { error } else { 1.0 };
+            sums.errors(&constants, below, errors);
+            let (mut largest, mut is_defined) = (0.0_f64, true);
+            for (error, weight) in errors.iter().zip(&mut *weights) {
+                let size = error.abs();
+                is_defined &= size <= f64::MAX;
+                let size = if size <= f64::MAX { size } else { 1.0 };
                 largest = largest.max(size);
-                weights[place] *= size;
-                total += weights[place];
+                *weight *= size;
             }
             if is_defined && best.is_none_or(|best| largest < best.error) {
                 best = Some(Fit { constants, error: largest });
             }
-            if total.is_nan()
-                || total <= 0.0
-                || below.iter().any(|value| *value == 0.0 || !value.is_finite())
-            {
+            if step == 1 && best.is_none_or(|best| best.error > steps.given_up) {
+                return None;
+            }
+            let total: f64 = weights.iter().sum();
+            let is_bounded = |value: &f64| *value != 0.0 && value.is_finite();
+            if total.is_nan() || total <= 0.0 || !below.iter().all(is_bounded) {
                 break;
             }
             let least = 1e-9 / places as f64;
@@ -199,6 +286,70 @@ impl QuotientOfSums<'_> {
         }
         best
     }
+}
+
+impl QuotientOfSums<'_> {
+    /// The columns of the linear problem `sum_i theta_i b_i/z - sum_j theta_j d_j = 1`, of the free constants.
+    #[inline(always)]
+    fn fill_columns(&self, into: &mut [f64]) {
+        let places = self.places();
+        for (i, column) in into.chunks_exact_mut(places).enumerate() {
+            match self.tie {
+                None => self.add_column(i, 1.0, column),
+                Some(tie) => {
+                    let rows = tie.matrix.iter().enumerate();
+                    rows.for_each(|(k, row)| self.add_column(k, row[i], column));
+                }
+            }
+        }
+    }
+
+    /// The right side of the linear problem.
+    #[inline(always)]
+    fn fill_right(&self, into: &mut [f64]) {
+        into.fill(1.0);
+        for (k, offset) in self.tie.iter().flat_map(|tie| tie.offset.iter().enumerate()) {
+            self.add_column(k, -offset, into);
+        }
+    }
+
+    /// Adds the column of a constant, free or tied, times a factor.
+    #[inline(always)]
+    fn add_column(&self, constant: usize, factor: f64, into: &mut [f64]) {
+        let above = self.numerator.len();
+        match constant < above {
+            true => subtract(into, -factor, self.numerator[constant]),
+            false => subtract(into, factor, self.denominator[constant - above]),
+        }
+    }
+}
+
+/// Subtracts a multiple of some numbers from others.
+#[inline(always)]
+fn subtract(from: &mut [f64], factor: f64, values: &[f64]) {
+    from.iter_mut().zip(values).for_each(|(own, value)| *own -= factor * value);
+}
+
+/// The products of two numbers each.
+#[inline(always)]
+fn multiply(into: &mut [f64], left: &[f64], right: &[f64]) {
+    into.iter_mut().zip(left.iter().zip(right)).for_each(|(into, (a, b))| *into = a * b);
+}
+
+/// A sum of products, eight sums side by side, so that it is the same with all vector instructions.
+#[inline(always)]
+fn sum_of_products(left: &[f64], right: &[f64]) -> f64 {
+    const TOGETHER: usize = 8;
+    let mut sums = [0.0; TOGETHER];
+    let (left, right) = (left.chunks_exact(TOGETHER), right.chunks_exact(TOGETHER));
+    let rest = left.remainder().iter().zip(right.remainder()).map(|(a, b)| a * b);
+    let rest: f64 = rest.sum();
+    for (left, right) in left.zip(right) {
+        for k in 0..TOGETHER {
+            sums[k] += left[k] * right[k];
+        }
+    }
+    sums.iter().sum::<f64>() + rest
 }
 
 /// The error from which on the constants are found to more digits than the normal equations have.
@@ -262,14 +413,17 @@ mod tests {
             (3, 3, &exponential, 6.767_168_345_400_847e-8),
             (4, 2, &root, 2.588_367_842_664_019e-8),
         ] {
+            let over_target = |power: &Vec<f64>| -> Vec<f64> {
+                power.iter().zip(target).map(|(value, target)| value / target).collect()
+            };
+            let numerator: Vec<Vec<f64>> = powers[..above].iter().map(over_target).collect();
             let sums = QuotientOfSums {
-                numerator: powers[..above].iter().map(Vec::as_slice).collect(),
+                numerator: numerator.iter().map(Vec::as_slice).collect(),
                 denominator: powers[1..=below].iter().map(Vec::as_slice).collect(),
-                target,
-                power: 1.0,
+                power: PowerOfQuotient::new(&Rational::from_integer(1.into())),
                 tie: None,
             };
-            let fit = sums.minimax(&[None; MOST_CONSTANTS], 40).unwrap();
+            let fit = sums.minimax(&[None; MOST_CONSTANTS], FitSteps::all(40)).unwrap();
             assert!(fit.error >= least * (1.0 - 1e-6), "{} {least}", fit.error);
             assert!(fit.error <= least * 1.02, "{} {least}", fit.error / least - 1.0);
         }

@@ -35,8 +35,8 @@ use crate::interrupt::Supervision;
 use crate::parallel::par_map;
 use crate::symbol::Symbol;
 use constants::{rounded_error, shortened};
-use families::{ShortFunction, Structure, is_same_growth, structures};
-use minimax::Tie;
+use families::{RelativeFunctions, ShortFunction, Structure, is_same_growth, structures};
+use minimax::{FitSteps, Tie};
 use problem::TrueFrequencies;
 use rest::RestSeries;
 use trees::Trees;
@@ -416,12 +416,13 @@ fn laws(
         })
         .collect();
     let truth = SearchData::some(&data.values, OF_FIT);
-    let chosen = structures(&functions, &truth, growth, longest);
+    let relative = RelativeFunctions::of_all_powers(&functions, &truth);
+    let chosen = structures(&functions, &relative, growth, longest);
     supervision.progress.begin(chosen.len());
     let found = par_map(&chosen, |structure| {
         let formulas = match supervision.interrupt.is_requested() {
             true => vec![],
-            false => of_structure(structure, &functions, (&truth, rest), longest),
+            false => of_structure(structure, (&functions, &relative), rest, longest),
         };
         supervision.progress.advance();
         formulas
@@ -433,16 +434,13 @@ fn laws(
 /// The formulas of a structure with constants of few digits.
 fn of_structure(
     structure: &Structure,
-    functions: &[ShortFunction],
-    (truth, rest): (&[f64], Option<&RestSeries>),
+    (functions, relative): (&[ShortFunction], &[RelativeFunctions]),
+    rest: Option<&RestSeries>,
     longest: usize,
 ) -> Vec<Formula> {
     /// Steps of the fit with free constants.
-    const STEPS: usize = 40;
-    let exponent = 1.0 / to_f64(&structure.power);
-    let target: Vec<f64> = truth.iter().map(|value| value.powf(exponent)).collect();
-    let one = vec![1.0; truth.len()];
-    let mut sums = structure.sums(functions, &one, &target);
+    const STEPS: FitSteps = FitSteps::all(40);
+    let Some(mut sums) = structure.sums(functions, relative) else { return vec![] };
     let tied = rest.map(|rest| structure.tied(functions, &rest.to_power(&structure.power)?));
     let tied = match tied {
         Some(None) => return vec![],

@@ -24,7 +24,7 @@ use super::super::elementary::Analytic as _;
 use super::super::force::function_of;
 use super::super::fourier_series::{FourierSeries, WORKING};
 use super::inverse_frequency::Extent;
-use super::jet::{Jet, widened};
+use super::jet::{Jet, LawValues as _, widened};
 use crate::exact::ball::Ball;
 use crate::exact::bound::Bound;
 use crate::exact::{Integer, Rational};

@@ -99,6 +99,15 @@ impl PiecePolynomial {
         Jet { value: widened(&own.value, self.remainder), ..own }
     }
 
+    /// The series of Chebyshev of the quantity where e is this series.
+    pub(super) fn along(&self, e: &FourierSeries) -> FourierSeries {
+        let none = FourierSeries::constant(Ball::zero());
+        let value = self.coefficients.iter().rev().fold(none, |value, coefficient| {
+            value.product(e).sum(&FourierSeries::constant(coefficient.clone()))
+        });
+        value.widened(self.remainder)
+    }
+
     /// The polynomial and its derivative by the variable, on a piece of this half width.
     pub(super) fn at(&self, e: &Ball, half: &Rational) -> Jet {
         let (mut value, mut slope) = (Ball::zero(), Ball::zero());

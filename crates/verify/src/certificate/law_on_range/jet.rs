@@ -1,12 +1,13 @@
-//! A law on an interval: its values and its slope, and the powers of a variable that reaches zero.
+//! A law on an interval: its series, or its values and its slope, and the powers of a variable that reaches zero.
 //!
-//! In: a law as an expression, and the variable p or `r = 1/p` on an interval. Out: balls that contain the
-//! value and the derivative of the law for all numbers of the interval, times a power of r: `sqrt(1 + p)` is
-//! `r^(-1/2) sqrt(r + 1)`, so that it has a value at infinity beside a truth that grows alike.
+//! In: a law as an expression, and the variable p or `r = 1/p` on an interval. Out: a series of Chebyshev that
+//! contains the law, or balls that contain its value and its derivative for all numbers of the interval, times a
+//! power of r: `sqrt(1 + p)` is `r^(-1/2) sqrt(r + 1)`, so that it has a value at infinity beside a truth that
+//! grows alike.
 
 use num_traits::{Signed as _, ToPrimitive as _, Zero as _};
 
-use super::super::force::function_of;
+use super::super::force::{function_of, power};
 use super::super::fourier_series::{FourierSeries, WORKING};
 use super::{LawNotProved, restitution};
 use crate::exact::ball::Ball;
@@ -20,6 +21,59 @@ pub(super) fn widened(ball: &Ball, by: Bound) -> Ball {
     Ball { middle: ball.middle.clone(), radius: ball.radius + by }
 }
 
+/// Values of a law on an interval.
+pub(super) trait LawValues: Clone {
+    /// A constant.
+    fn constant(value: Ball) -> Self;
+
+    /// A whole number.
+    fn integer(value: i64) -> Self {
+        Self::constant(WORKING.integer(value))
+    }
+
+    /// `self + other`.
+    fn plus(&self, other: &Self) -> Self;
+
+    /// `self * other`.
+    fn times(&self, other: &Self) -> Self;
+
+    /// A rational power, of a positive number where it is not whole; `None` if it is not proved to exist.
+    fn to_power(&self, exponent: &Rational) -> Option<Self>;
+
+    /// A function; `None` if it is not proved to exist.
+    fn function(&self, function: Function) -> Option<Self>;
+
+    /// All functions with values between zero and a number; `None` where they are no such values.
+    fn up_to(end: &Ball) -> Option<Self>;
+}
+
+/// A cosine series in theta, where the variable is `m + h cos(theta)`: a series of Chebyshev.
+impl LawValues for FourierSeries {
+    fn constant(value: Ball) -> Self {
+        Self::constant(value)
+    }
+
+    fn plus(&self, other: &Self) -> Self {
+        self.sum(other)
+    }
+
+    fn times(&self, other: &Self) -> Self {
+        self.product(other)
+    }
+
+    fn to_power(&self, exponent: &Rational) -> Option<Self> {
+        power(self, exponent)
+    }
+
+    fn function(&self, function: Function) -> Option<Self> {
+        function_of(function, self)
+    }
+
+    fn up_to(_: &Ball) -> Option<Self> {
+        None
+    }
+}
+
 /// A number and its derivative by the variable.
 #[derive(Clone, Debug)]
 pub(super) struct Jet {
@@ -28,7 +82,15 @@ pub(super) struct Jet {
 }
 
 impl Jet {
-    pub(super) fn constant(value: Ball) -> Self {
+    fn inverse(&self) -> Option<Self> {
+        let value = WORKING.quotient(&WORKING.integer(1), &self.value)?;
+        let slope = WORKING.product(&WORKING.product(&value, &value), &self.slope);
+        Some(Self { value, slope: WORKING.scaled(&slope, -1) })
+    }
+}
+
+impl LawValues for Jet {
+    fn constant(value: Ball) -> Self {
         Self { value, slope: Ball::zero() }
     }
 
@@ -39,7 +101,7 @@ impl Jet {
         }
     }
 
-    pub(super) fn times(&self, other: &Self) -> Self {
+    fn times(&self, other: &Self) -> Self {
         let product = |one: &Ball, other: &Ball| WORKING.product(one, other);
         Self {
             value: product(&self.value, &other.value),
@@ -48,14 +110,7 @@ impl Jet {
         }
     }
 
-    fn inverse(&self) -> Option<Self> {
-        let value = WORKING.quotient(&WORKING.integer(1), &self.value)?;
-        let slope = WORKING.product(&WORKING.product(&value, &value), &self.slope);
-        Some(Self { value, slope: WORKING.scaled(&slope, -1) })
-    }
-
-    /// A rational power, of a positive number where it is not whole.
-    pub(super) fn to_power(&self, exponent: &Rational) -> Option<Self> {
+    fn to_power(&self, exponent: &Rational) -> Option<Self> {
         let (times, degree) = (exponent.numer().abs().to_u32()?, exponent.denom().to_u32()?);
         if times > MOST_TIMES || degree > MOST_TIMES {
             return None;
@@ -91,99 +146,125 @@ impl Jet {
         };
         Some(Self { value, slope: WORKING.product(&slope, &self.slope) })
     }
+
+    fn up_to(end: &Ball) -> Option<Self> {
+        let half = WORKING.divided(end, 2);
+        let radius = WORKING.magnitude(&half);
+        let slope = Ball { middle: Integer::zero(), radius: Bound::UNKNOWN };
+        Some(Self { value: widened(&half, radius), slope })
+    }
 }
 
 /// The largest power, and degree of a root, of a law.
 const MOST_TIMES: u32 = 64;
 
 /// The variable, or r, on an interval.
-pub(super) struct Variable {
-    place: Ball,
+pub(super) struct Variable<V> {
+    own: V,
     pub(super) from: Rational,
     to: Rational,
     /// The restitution of a contact there.
-    pub(super) restitution: Option<Jet>,
+    pub(super) restitution: Option<V>,
 }
 
-impl Variable {
+impl Variable<Jet> {
+    /// The variable at a place.
     pub(super) fn at(place: &Rational) -> Self {
-        let (from, to) = (place.clone(), place.clone());
-        Self { place: WORKING.fraction(place), from, to, restitution: None }
+        Self::between(place, place)
     }
 
+    /// The variable on an interval.
     pub(super) fn between(from: &Rational, to: &Rational) -> Self {
         let two = Integer::from(2);
         let half = Bound::of_fraction(&((to - from) / &two));
         let place = widened(&WORKING.fraction(&((from + to) / &two)), half);
-        Self { place, from: from.clone(), to: to.clone(), restitution: None }
+        let own = Jet { value: place, slope: WORKING.integer(1) };
+        Self { own, from: from.clone(), to: to.clone(), restitution: None }
     }
+}
 
-    /// `r^exponent` with its slope, for an exponent that is not negative.
-    fn power(&self, exponent: &Rational) -> Option<Jet> {
-        let jet = Jet { value: self.place.clone(), slope: WORKING.integer(1) };
+impl Variable<FourierSeries> {
+    /// The variable on an interval as a series of Chebyshev.
+    pub(super) fn along(from: &Rational, to: &Rational) -> Self {
+        Self { own: line(from, to), from: from.clone(), to: to.clone(), restitution: None }
+    }
+}
+
+/// Binary digits of the series, whose errors need only be small beside the error of a law.
+const DIGITS: usize = 48;
+
+/// The numbers from one to another as a series of Chebyshev.
+pub(super) fn line(from: &Rational, to: &Rational) -> FourierSeries {
+    let two = Integer::from(2);
+    let ends = [(from + to) / &two, (to - from) / &two].map(|number| WORKING.fraction(&number));
+    FourierSeries::exactly(ends.to_vec(), vec![]).of_digits(DIGITS)
+}
+
+impl<V: LawValues> Variable<V> {
+    /// `r^exponent`, for an exponent that is not negative.
+    fn power(&self, exponent: &Rational) -> Option<V> {
         if exponent.is_zero() {
-            return Some(Jet::constant(WORKING.integer(1)));
+            return Some(V::integer(1));
         }
         if exponent.is_integer() || self.from.is_positive() {
-            return jet.to_power(exponent);
+            return self.own.to_power(exponent);
         }
-        // Between zero and the power of the upper end, with a slope that is not bounded.
         let end = Jet::constant(WORKING.fraction(&self.to)).to_power(exponent)?;
-        let half = WORKING.divided(&end.value, 2);
-        let radius = WORKING.magnitude(&half);
-        Some(Jet {
-            value: widened(&half, radius),
-            slope: Ball { middle: Integer::zero(), radius: Bound::UNKNOWN },
-        })
+        V::up_to(&end.value)
     }
 }
 
-/// A number times a power of the variable of an interval, which may reach zero.
+/// Values times a power of the variable of an interval, which may reach zero.
 #[derive(Clone, Debug)]
-pub(super) struct ScaledJet {
+pub(super) struct Scaled<V> {
     pub(super) power: Rational,
-    pub(super) jet: Jet,
+    pub(super) values: V,
 }
 
-impl ScaledJet {
-    /// This number written with another, smaller power; `None` if the power of the variable has no value.
-    fn with_power(&self, power: &Rational, variable: &Variable) -> Option<Self> {
+impl<V: LawValues> Scaled<V> {
+    /// These values written with another, smaller power; `None` if the power of the variable has no value.
+    fn with_power(&self, power: &Rational, variable: &Variable<V>) -> Option<Self> {
         let more = &self.power - power;
-        let jet = match more.is_zero() {
-            true => self.jet.clone(),
-            false => self.jet.times(&variable.power(&more)?),
+        let values = match more.is_zero() {
+            true => self.values.clone(),
+            false => self.values.times(&variable.power(&more)?),
         };
-        Some(Self { power: power.clone(), jet })
+        Some(Self { power: power.clone(), values })
     }
 
-    /// The number itself, without a power.
-    pub(super) fn unscaled(&self, variable: &Variable) -> Option<Jet> {
+    /// The values themselves, without a power.
+    pub(super) fn unscaled(&self, variable: &Variable<V>) -> Option<V> {
+        if self.power.is_zero() {
+            return Some(self.values.clone());
+        }
         let power = match self.power.is_negative() {
-            true => variable.power(&-&self.power)?.inverse()?,
+            true => {
+                let inverse = Rational::from_integer((-1).into());
+                variable.power(&-&self.power)?.to_power(&inverse)?
+            }
             false => variable.power(&self.power)?,
         };
-        Some(self.jet.times(&power))
+        Some(self.values.times(&power))
     }
 }
 
 /// The law with the variable in an interval, or its reciprocal.
-pub(super) fn law_along(
+pub(super) fn law_along<V: LawValues>(
     law: &Expr,
     symbol: Symbol,
-    variable: &Variable,
+    variable: &Variable<V>,
     is_far: bool,
-) -> Result<ScaledJet, LawNotProved> {
-    let unscaled = |jet: Jet| ScaledJet { power: Rational::zero(), jet };
-    let value = |node: &Expr, parts: &[ScaledJet]| -> Option<ScaledJet> {
+) -> Result<Scaled<V>, LawNotProved> {
+    let unscaled = |values: V| Scaled { power: Rational::zero(), values };
+    let value = |node: &Expr, parts: &[Scaled<V>]| -> Option<Scaled<V>> {
         match node.node() {
-            Node::Number(value) => Some(unscaled(Jet::constant(WORKING.fraction(value)))),
-            Node::Pi => Some(unscaled(Jet::constant(WORKING.pi()))),
+            Node::Number(value) => Some(unscaled(V::constant(WORKING.fraction(value)))),
+            Node::Pi => Some(unscaled(V::constant(WORKING.pi()))),
             Node::Symbol(name) if *name == symbol => Some(match is_far {
-                false => unscaled(Jet { value: variable.place.clone(), slope: WORKING.integer(1) }),
-                true => ScaledJet {
-                    power: Rational::from_integer((-1).into()),
-                    jet: Jet::constant(WORKING.integer(1)),
-                },
+                false => unscaled(variable.own.clone()),
+                true => {
+                    Scaled { power: Rational::from_integer((-1).into()), values: V::integer(1) }
+                }
             }),
             Node::Symbol(name) if *name == restitution() => {
                 variable.restitution.clone().map(unscaled)
@@ -194,14 +275,14 @@ pub(super) fn law_along(
                 let mut aligned = parts.iter().map(|part| part.with_power(least, variable));
                 let first = aligned.next()??;
                 aligned.try_fold(first, |sum, part| {
-                    Some(ScaledJet { power: sum.power, jet: sum.jet.plus(&part?.jet) })
+                    Some(Scaled { power: sum.power, values: sum.values.plus(&part?.values) })
                 })
             }
             Node::Product(coefficient, _) => {
-                let number = unscaled(Jet::constant(WORKING.fraction(coefficient)));
-                Some(parts.iter().fold(number, |product, part| ScaledJet {
+                let number = unscaled(V::constant(WORKING.fraction(coefficient)));
+                Some(parts.iter().fold(number, |product, part| Scaled {
                     power: &product.power + &part.power,
-                    jet: product.jet.times(&part.jet),
+                    values: product.values.times(&part.values),
                 }))
             }
             Node::Power(_, exponent) => {
@@ -212,14 +293,15 @@ pub(super) fn law_along(
                 {
                     return Some(unscaled(variable.power(exponent)?));
                 }
-                Some(ScaledJet { power: &base.power * exponent, jet: base.jet.to_power(exponent)? })
+                let values = base.values.to_power(exponent)?;
+                Some(Scaled { power: &base.power * exponent, values })
             }
             Node::Function(function, _) => {
                 Some(unscaled(parts.first()?.unscaled(variable)?.function(*function)?))
             }
         }
     };
-    law.fold(|node, parts: &[ScaledJet]| {
+    law.fold(|node, parts: &[Scaled<V>]| {
         value(node, parts).ok_or_else(|| LawNotProved::NoValue(node.to_string()))
     })
 }

@@ -76,9 +76,8 @@ pub fn rounded_fraction(value: &Rational, digits: usize) -> Rational {
 /// Returns the two decimals of this many significant digits next to a fraction, the first not above
 /// it and the second not below; both are the fraction itself if it is such a decimal.
 pub fn neighbours(value: &Rational, digits: usize) -> [Rational; 2] {
-    let (_, power) = scientific(value, digits);
+    let (count, power) = in_units(value, digits);
     let unit: Rational = Pow::pow(Rational::from_integer(10.into()), power);
-    let count = value / &unit;
     [count.floor() * &unit, count.ceil() * unit]
 }
 
@@ -284,19 +283,24 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
 /// Returns a whole number of this many digits and a power of ten, whose product is the rounded
 /// fraction.
 fn scientific(value: &Rational, digits: usize) -> (Integer, i32) {
+    let (count, power) = in_units(value, digits);
+    (count.round().to_integer(), power)
+}
+
+/// Returns a fraction in units of a power of ten, and that power: rounded, it has this many digits.
+fn in_units(value: &Rational, digits: usize) -> (Rational, i32) {
     if value.is_zero() {
-        return (Integer::zero(), 0);
+        return (Rational::zero(), 0);
     }
     // The logarithm may be off by one: a digit too many or too few is corrected.
     let logarithm = Scaled::of_fraction(value).logarithm() / std::f64::consts::LN_10;
     let mut power = logarithm.floor() as i32 - digits as i32 + 1;
     loop {
-        let scaled = value / Pow::pow(Rational::from_integer(10.into()), power);
-        let mantissa = scaled.round().to_integer();
-        match mantissa.abs().to_string().len() {
+        let count = value / Pow::pow(Rational::from_integer(10.into()), power);
+        match count.round().to_integer().abs().to_string().len() {
             found if found > digits => power += 1,
             found if found < digits => power -= 1,
-            _ => return (mantissa, power),
+            _ => return (count, power),
         }
     }
 }

@@ -175,11 +175,6 @@ impl Balls {
     /// `ball / divisor`, for a divisor that is not zero.
     pub fn divided(self, ball: &Ball, divisor: u32) -> Ball {
         let radius = ball.radius / divisor;
-        // Every coefficient of a product of Fourier series is halved.
-        if divisor == 2 {
-            let unit = if ball.middle.is_odd() { self.unit() } else { Bound::ZERO };
-            return Ball { middle: &ball.middle >> 1, radius: radius + unit };
-        }
         let (middle, rest) = ball.middle.div_mod_floor(&divisor.into());
         Ball { middle, radius: if rest.is_zero() { radius } else { radius + self.unit() } }
     }

@@ -86,11 +86,19 @@ impl BallProductSums {
         }
     }
 
-    /// The sums, each rounded to a ball with the digits of the factors on one side; those on the other
-    /// side have `places` binary digits after the point.
-    pub fn rounded(mut self, balls: Balls, places: usize) -> Vec<Ball> {
+    /// The sums, each halved so many times and rounded to a ball with the digits of the factors on one side;
+    /// those on the other side have `places` binary digits after the point.
+    pub fn rounded(mut self, balls: Balls, places: usize, halvings: u32) -> Vec<Ball> {
         let sums = self.words.chunks_exact_mut(self.width).zip(self.radii);
-        sums.map(|(words, radius)| balls.shifted(&signed(words), places, radius)).collect()
+        let places = places + halvings as usize;
+        let rounded = |(words, radius): (&mut [u64], Bound)| {
+            let radius = match halvings {
+                0 => radius,
+                _ => radius * Bound::power_of_two(-(halvings as i32)),
+            };
+            balls.shifted(&signed(words), places, radius)
+        };
+        sums.map(rounded).collect()
     }
 }
 
@@ -180,7 +188,7 @@ mod tests {
                 radius += BALLS.radius_of_product(left, right);
             }
             let expected = [units.clone(), -units].map(|units| BALLS.rounded(&units, radius));
-            prop_assert_eq!(sums.rounded(BALLS, BALLS.bits), expected);
+            prop_assert_eq!(sums.rounded(BALLS, BALLS.bits, 0), expected);
         }
     }
 }

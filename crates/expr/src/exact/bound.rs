@@ -38,8 +38,11 @@ impl Bound {
 
     /// The bound `2^exponent`; unknown beyond the exponents of normal doubles.
     pub fn power_of_two(exponent: i32) -> Self {
+        /// The exponent of one in the bits of a double, and the number of bits after it.
+        const ONE: i32 = f64::MAX_EXP - 1;
+        const AFTER: u32 = f64::MANTISSA_DIGITS - 1;
         match (f64::MIN_EXP..f64::MAX_EXP).contains(&exponent) {
-            true => Self::exactly(2.0_f64.powi(exponent)),
+            true => Self(f64::from_bits(((exponent + ONE) as u64) << AFTER)),
             false => Self::UNKNOWN,
         }
     }

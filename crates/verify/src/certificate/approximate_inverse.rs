@@ -47,7 +47,7 @@ impl Inverse {
                 }
             }
         }
-        sums.rounded(balls, self.bits)
+        sums.rounded(balls, self.bits, 0)
     }
 
     /// The norm of a vector on the number and the harmonics of the block.

@@ -411,7 +411,7 @@ fn largest(series: &FourierSeries) -> (f64, Bound) {
         }
     }
     let (mut lower, mut upper) = (0.0_f64, Bound::ZERO);
-    for value in values.rounded(BALLS, BALLS.bits) {
+    for value in values.rounded(BALLS, BALLS.bits, 0) {
         lower = lower.max(BALLS.distance_from_zero(&value));
         upper = upper.max(BALLS.magnitude(&value));
     }

@@ -269,10 +269,7 @@ impl FourierSeries {
         });
         add_products(&mut sines, own_sines, other_cosines, |i, j| [(i + j, false), apart(i, j)]);
         add_products(&mut sines, other_sines, own_cosines, |i, j| [(i + j, false), apart(i, j)]);
-        let halved = |doubled: BallProductSums| -> Vec<Ball> {
-            let doubled = doubled.rounded(WORKING, WORKING.bits).into_iter();
-            doubled.map(|ball| WORKING.divided(&ball, 2)).collect()
-        };
+        let halved = |doubled: BallProductSums| doubled.rounded(WORKING, WORKING.bits, 1);
         let (cosines, mut sines) = (halved(cosines), halved(sines));
         // sin 0 is zero, whatever its coefficient.
         if let Some(constant) = sines.first_mut() {

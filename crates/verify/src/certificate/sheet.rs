@@ -182,8 +182,7 @@ impl Analytic for Sheet {
                 sums.add(own, other, places.map(|place| (place, false)));
             }
         }
-        // Their radii are rounding alone, and may stay those of four times as much.
-        let balls = sums.rounded(PRECISION, PRECISION.bits + 2);
+        let balls = sums.rounded(PRECISION, PRECISION.bits, 2);
         let rows = balls.chunks(width.max(1)).map(<[Ball]>::to_vec).collect();
         let tail = self.tail * other.norm() + other.tail * self.finite_norm();
         Self::of_balls(rows, tail)

@@ -85,7 +85,7 @@ const STEPS: usize = 6;
 
 /// The ratio to the error up to which structures are kept from which on the first steps decide: the others
 /// gain less than that.
-const GIVEN_UP: f64 = 10.0;
+const GIVEN_UP: f64 = 5.0;
 
 /// The truth as a power n of z, and the functions over z.
 pub(super) struct RelativeFunctions {

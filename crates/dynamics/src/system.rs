@@ -171,7 +171,7 @@ impl Default for SystemOptions {
 }
 
 /// An event: an expression in time and states whose zeros are located.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Event {
     expression: Expr,
     stops: bool,
@@ -452,6 +452,11 @@ pub struct Solver {
 }
 
 impl Solver {
+    /// The events.
+    pub fn events(&self) -> &[Event] {
+        &self.events
+    }
+
     /// Returns the solver with other values of the parameters. Returns `None` if the recurrences
     /// must be derived anew: for other numbers in corners or roots, which determine what is one
     /// corner, and for Runge-Kutta.

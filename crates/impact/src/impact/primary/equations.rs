@@ -19,7 +19,7 @@ use super::{PrimaryCase, PrimaryError};
 use crate::expr::{Expr, parse_expression};
 use crate::mechanics::{MechanicsError, Mechanism};
 use crate::symbol::Symbol;
-use crate::system::System;
+use crate::system::{Event, Path, Solver, System, SystemError, SystemOptions};
 
 /// Number of energies integrated with the states: viscous, friction, contact, dashpot, force.
 pub(super) const ACCOUNTS: usize = 5;
@@ -40,6 +40,8 @@ pub(super) struct PrimaryEquations {
     accelerations: &'static Accelerations,
     numbers: BTreeMap<Symbol, f64>,
     case: PrimaryCase,
+    /// Whether the energies are states as well.
+    is_accounted: bool,
     /// The systems of the phases met so far, because a motion repeats the same phases.
     built: RefCell<Vec<(PhaseKey, Rc<PhaseSystem>)>>,
 }
@@ -50,9 +52,30 @@ type PhaseKey = (Option<Side>, f64);
 
 /// The system of a phase: its states, followed by the energies that change in it.
 pub(super) struct PhaseSystem {
-    pub(super) system: System,
+    system: System,
     /// Indices of these accounts.
     pub(super) accounts: Vec<usize>,
+    /// Solvers for the events with which it has been followed.
+    solvers: RefCell<Vec<Solver>>,
+}
+
+impl PhaseSystem {
+    /// Follows the phase until one of these events. All runs have the same options.
+    pub(super) fn solve(
+        &self,
+        times: [f64; 2],
+        values: &[f64],
+        events: &[Event],
+        options: &SystemOptions,
+    ) -> Result<Path, SystemError> {
+        let mut solvers = self.solvers.borrow_mut();
+        let place = solvers.iter().position(|solver| solver.events() == events);
+        let place = place.unwrap_or_else(|| {
+            solvers.push(self.system.clone().solver(events, options));
+            solvers.len() - 1
+        });
+        solvers[place].solve(times, values)
+    }
 }
 
 /// Parses an expression of this file.
@@ -85,7 +108,8 @@ fn derive() -> Result<Accelerations, MechanicsError> {
 }
 
 impl PrimaryEquations {
-    pub(super) fn new(case: PrimaryCase) -> Result<Self, PrimaryError> {
+    /// The equations of a case, with those of its energies or without.
+    pub(super) fn new(case: PrimaryCase, is_accounted: bool) -> Result<Self, PrimaryError> {
         let accelerations = DERIVED.as_ref().map_err(Clone::clone)?;
         let (primary, model) = (case.primary, case.model);
         let numbers = [
@@ -103,6 +127,7 @@ impl PrimaryEquations {
             accelerations,
             numbers: numbers.map(|(name, value)| (Symbol::new(name), value)).into(),
             case,
+            is_accounted,
             built: RefCell::default(),
         })
     }
@@ -135,6 +160,9 @@ impl PrimaryEquations {
 
     /// Rates of the accounts: viscous, friction, contact, dashpot, force.
     fn accounts(&self, friction: Expr, contact: Expr) -> [Expr; ACCOUNTS] {
+        if !self.is_accounted {
+            return std::array::from_fn(|_| Expr::zero());
+        }
         [parsed("2*zeta*x'^2"), friction, contact, parsed("delta*y'^2"), parsed("f*sin(eta*t)*y'")]
     }
 
@@ -173,7 +201,7 @@ impl PrimaryEquations {
         let rates = accounts.iter().map(|account| account_rates[*account].clone());
         let rates: Vec<Expr> = own_rates.iter().cloned().chain(rates).collect();
         let system = System::new(&names, Symbol::new(time), &rates, &self.numbers_and(more))?;
-        Ok(PhaseSystem { system, accounts })
+        Ok(PhaseSystem { system, accounts, solvers: RefCell::default() })
     }
 
     /// The numbers of the case, and these in addition.

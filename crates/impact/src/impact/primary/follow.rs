@@ -50,12 +50,22 @@ pub fn simulate_primary(
     case: PrimaryCase,
     settings: &PrimarySettings,
 ) -> Result<PrimaryMotion, PrimaryError> {
+    follow_primary(case, settings, true)
+}
+
+/// Follows a motion as [`simulate_primary`] does; where it is not accounted for, its energies are of no use,
+/// and no equations are solved for them.
+pub(super) fn follow_primary(
+    case: PrimaryCase,
+    settings: &PrimarySettings,
+    is_accounted: bool,
+) -> Result<PrimaryMotion, PrimaryError> {
     case.check()?;
     if !(settings.duration > 0.0 && settings.duration.is_finite()) {
         return Err(PrimaryError::Duration(settings.duration));
     }
     let chain = settings.chain.then(|| PrimaryChain::new(&case)).transpose()?;
-    let mut run = PrimaryRun::new(case, settings)?;
+    let mut run = PrimaryRun::new(case, settings, is_accounted)?;
     let stop = loop {
         if run.t >= settings.duration {
             break PrimaryStop::Duration;
@@ -155,14 +165,18 @@ fn offset(name: &str, place: f64) -> Expr {
 }
 
 impl<'a> PrimaryRun<'a> {
-    fn new(case: PrimaryCase, settings: &'a PrimarySettings) -> Result<Self, PrimaryError> {
+    fn new(
+        case: PrimaryCase,
+        settings: &'a PrimarySettings,
+        is_accounted: bool,
+    ) -> Result<Self, PrimaryError> {
         let [x, velocity, y, speed] = case.start;
         let state = PrimaryState { x, velocity, y, speed };
         let energy = case.energy(state);
         let mut run = Self {
             case,
             settings,
-            equations: PrimaryEquations::new(case)?,
+            equations: PrimaryEquations::new(case, is_accounted)?,
             regime: PrimaryRegime::Free(0.0),
             t: 0.0,
             state,
@@ -321,12 +335,8 @@ impl<'a> PrimaryRun<'a> {
         let followed = self.equations.flight(direction)?;
         let PrimaryState { x, velocity, y, speed } = self.state;
         let start = self.with_accounts(&[x, velocity, y, speed], &followed);
-        let path = followed.system.solve(
-            [self.t, self.end_of_flight()],
-            &start,
-            events,
-            &self.options(),
-        )?;
+        let path =
+            followed.solve([self.t, self.end_of_flight()], &start, events, &self.options())?;
         self.turns_of(&path, |state| state[2], |time| time);
         for met in path.occurrences().iter().filter(|met| Some(met.event) == swings) {
             self.swings.extend(path.states_at(met.time).map(|state| (met.time, state[0])));
@@ -405,8 +415,7 @@ impl<'a> PrimaryRun<'a> {
         }
         let PrimaryState { velocity, y, speed, .. } = self.state;
         let start = self.with_accounts(&[w, velocity, y, speed, self.t], &followed);
-        let path =
-            followed.system.solve([0.0, LONGEST_CONTACT], &start, &events, &self.options())?;
+        let path = followed.solve([0.0, LONGEST_CONTACT], &start, &events, &self.options())?;
         self.turns_of(&path, |state| state[2], |_| f64::NAN);
         let turns = path.occurrences().iter().filter(|met| met.event == 3);
         let turns: Vec<Vec<f64>> = turns.filter_map(|met| path.states_at(met.time)).collect();
@@ -486,12 +495,8 @@ impl<'a> PrimaryRun<'a> {
             events.push(Event::stop(&torque + &bound).falling());
         }
         let start = self.with_accounts(&[y, speed], &followed);
-        let path = followed.system.solve(
-            [self.t, self.settings.duration],
-            &start,
-            &events,
-            &self.options(),
-        )?;
+        let path =
+            followed.solve([self.t, self.settings.duration], &start, &events, &self.options())?;
         self.turns_of(&path, |state| state[0], |time| time);
         let (reason, end) = (path.reason(), path.end());
         let last = path.states_at(end).unwrap_or(start);

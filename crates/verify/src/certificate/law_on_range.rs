@@ -623,3 +623,34 @@ impl TruthPiece {
         Ok(WORKING.magnitude(&WORKING.difference(&quotient, &WORKING.integer(1))).value())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::ratio;
+
+    /// `sqrt(A)` has no series of Chebyshev from zero on. The error of the law at 1/2 was computed from the
+    /// elliptic integral with 20 digits: `(1 - A^2/16 - sqrt(A)/100) 2 K(sin(A/2))/pi - 1`.
+    #[test]
+    fn a_law_with_a_root_from_zero_on_is_bounded_by_its_values() {
+        const ERROR: f64 = 0.007_203_326_831_296_678;
+        let law = |upper: Rational| LawCertificate {
+            motions: MotionsOfLaw::Coordinate {
+                force: "sin(x)".parse().unwrap(),
+                mass: None,
+                start: StartOfLaw::Variable,
+            },
+            variable: "A".into(),
+            quantity: LawQuantity::Frequency,
+            law: "1 - A^2/16 - sqrt(A)/100".parse().unwrap(),
+            from: ratio(0, 1),
+            to: Some(ratio(1, 2)),
+            worst: ratio(1, 2),
+            claim: [ratio(72_033, 10_000_000), upper],
+        };
+        let error = check_law(&law(ratio(72_040, 10_000_000))).unwrap();
+        assert!(error.lower <= ERROR && ERROR <= error.upper, "{error:?}");
+        assert!(error.lower > ERROR - 1e-12 && error.upper < 7.2041e-3, "{error:?}");
+        assert!(check_law(&law(ratio(72_033, 10_000_000))).is_err());
+    }
+}

@@ -108,7 +108,7 @@ impl PreparedRequest<'_> {
         self.search_from_guesses(&balance, (&values, &added), known, &mut found);
         let seeds = &mut found.motions.seeds;
         found.size = found.size.max(size_of(seeds));
-        let branches = self.branches_through(&balance, seeds, found.size, &[]);
+        let mut branches = self.branches_through(&balance, seeds, found.size, &[]);
         for path in &branches {
             for (seed, extent) in self.reentries(&balance, path, seeds, found.size) {
                 seeds.push(seed);
@@ -119,20 +119,52 @@ impl PreparedRequest<'_> {
         }
         if !self.driven.undamped {
             found.stable = self.stable_on(&balance, &branches, &around);
-            self.search_around(&around, found.size, &mut found);
+            let before = found.motions.seeds.len();
+            self.search_around(&around, 0, found.size, &mut found);
             // Motions at the added values are far smaller, or larger, than those at others.
             for value in &added {
                 let own = found.motions.seeds.iter().filter(|seed| seed.parameter == *value);
                 let size = own.map(Seed::extent).fold(0.0, f64::max);
                 let size = if size > 0.0 { size } else { found.size };
-                self.search_around(&[*value], size, &mut found);
+                self.search_around(&[*value], 0, size, &mut found);
             }
+            self.search_again(&balance, &around, before, &mut branches, &mut found);
         }
         found.motions.branches = branches;
         Elsewhere::sort(&mut found.motions.elsewhere);
         match found.motions.seeds.is_empty() {
             true => Err(self.no_motion_error()),
             false => Ok(found.motions),
+        }
+    }
+
+    /// Repeats the search from all around, each time from other places, until nothing new is found. The
+    /// branches through the motions that were new, those after a number of motions, are followed first:
+    /// simulations end where they come to a known branch.
+    fn search_again(
+        &self,
+        balance: &DrivenBalance,
+        values: &[f64],
+        mut before: usize,
+        branches: &mut Vec<BranchPath>,
+        found: &mut Search,
+    ) {
+        /// The number of searches, the first one included.
+        const ROUNDS: usize = 3;
+        for round in 1..ROUNDS {
+            let new = &found.motions.seeds[before..];
+            if new.is_empty() || self.question.interrupt.is_requested() {
+                return;
+            }
+            let known = branches.len();
+            *branches = self.branches_through(balance, new, found.size, branches);
+            if branches.len() == known {
+                return;
+            }
+            found.stable = self.stable_on(balance, branches, values);
+            before = found.motions.seeds.len();
+            self.question.progress.begin(values.len() * RADII.len() * self.speeds_of_starts());
+            self.search_around(values, round, found.size, found);
         }
     }
 
@@ -264,8 +296,8 @@ impl PreparedRequest<'_> {
     }
 
     /// Adds the motions on which simulations settle from places all around in the plane of position
-    /// and velocity, in proportion to a size.
-    fn search_around(&self, values: &[f64], size: f64, found: &mut Search) {
+    /// and velocity, in proportion to a size; other places in each round.
+    fn search_around(&self, values: &[f64], round: usize, size: f64, found: &mut Search) {
         /// Parts of a turn from one value to the next, which leave no direction out (the golden
         /// section), from one radius to the other, and from one speed to the other.
         const TURNS: [f64; 3] = [0.618_034, 0.5, 0.25];
@@ -275,7 +307,7 @@ impl PreparedRequest<'_> {
             let places = (0..self.speeds_of_starts())
                 .flat_map(|speed| (0..RADII.len()).map(move |ring| [speed, ring]));
             places.map(move |[speed, ring]| {
-                let turns = [index, ring, speed].map(|count| count as f64);
+                let turns = [index + round * values.len(), ring, speed].map(|count| count as f64);
                 let turn: f64 = TURNS.iter().zip(turns).map(|(part, count)| part * count).sum();
                 let (sine, cosine) = (TAU * turn).sin_cos();
                 let size = RADII[ring] * size;

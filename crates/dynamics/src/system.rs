@@ -45,7 +45,7 @@ use crate::series::recurrence::RecurrenceError;
 use crate::symbol::Symbol;
 
 pub use corner_powers::roots_across_corners;
-pub use taylor::LANES;
+pub use taylor::{LANES, SideBySide};
 pub use variations::Variations;
 
 use expansion::Expansions;
@@ -496,8 +496,9 @@ impl Solver {
         let (system, events, options) = (&self.system, &self.events, &self.options);
         match &self.expansions {
             Some(expansions) => {
-                let expansions = expansions.clone()?;
-                let run = TaylorRun::new(system, times, values, events, options, expansions);
+                let own = expansions.clone()?;
+                let idle = &mut vec![];
+                let run = TaylorRun::new(system, times, values, events, options, own, idle);
                 taylor::follow(run?)
             }
             None => runge_kutta::follow(system, times, values, events, options),
@@ -509,21 +510,7 @@ impl Solver {
 /// values. Motions whose solvers differ only in numbers are computed side by side, [`LANES`] at a
 /// time; each result is bit for bit the same as alone.
 pub fn solve_together(motions: &[(&Solver, [f64; 2], &[f64])]) -> Vec<Result<Path, SystemError>> {
-    let mut runs: Vec<TaylorRun> = Vec::new();
-    let mut alone = Vec::new();
-    for &(solver, times, values) in motions {
-        let Solver { system, events, options, expansions, .. } = solver;
-        let run = match expansions {
-            Some(Ok(own)) if system.check(times, values, options).is_ok() => {
-                TaylorRun::new(system, times, values, events, options, own.clone()).ok()
-            }
-            _ => None,
-        };
-        alone.push(run.is_none().then(|| solver.solve(times, values)));
-        runs.extend(run);
-    }
-    let mut together = taylor::follow_together(runs).into_iter();
-    alone.into_iter().filter_map(|alone| alone.or_else(|| together.next())).collect()
+    SideBySide::default().solve(motions)
 }
 
 impl System {
@@ -618,7 +605,9 @@ impl System {
         match options.integrator {
             Integrator::Taylor => {
                 let expansions = Expansions::new(self, events, options.tolerance)?;
-                taylor::follow(TaylorRun::new(self, times, values, events, options, expansions)?)
+                let idle = &mut vec![];
+                let run = TaylorRun::new(self, times, values, events, options, expansions, idle);
+                taylor::follow(run?)
             }
             Integrator::RungeKutta => runge_kutta::follow(self, times, values, events, options),
         }

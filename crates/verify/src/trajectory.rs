@@ -39,8 +39,8 @@ use crate::mechanics::{EquationsOfMotion, Mechanism, Rates};
 use crate::oscillator::Oscillator;
 use crate::symbol::{Symbol, fresh};
 use crate::system::{
-    Event, Integrator, Path, PathEnd, Solver, System, SystemError, SystemOptions,
-    roots_across_corners, solve_together,
+    Event, Integrator, Path, PathEnd, SideBySide, Solver, System, SystemError, SystemOptions,
+    roots_across_corners,
 };
 use crate::wall::Wall;
 use error::names;
@@ -437,6 +437,7 @@ impl TrajectoryRequest {
             })
             .collect();
         // Each round goes on to the next impact of every motion.
+        let mut side_by_side = SideBySide::default();
         loop {
             let is_going = |run: &mut Result<EventRun, _>| {
                 run.as_mut().is_ok_and(|run| !run.has_ended() && run.next_flight().is_ok())
@@ -448,7 +449,7 @@ impl TrajectoryRequest {
             if flights.is_empty() {
                 break;
             }
-            let mut paths = solve_together(&flights).into_iter();
+            let mut paths = side_by_side.solve(&flights).into_iter();
             for (run, _) in runs.iter_mut().zip(&going).filter(|(_, going)| **going) {
                 let path = paths.next().map(|path| path.map_err(TrajectoryError::from));
                 let advanced = match (run.as_mut(), path) {
@@ -719,6 +720,24 @@ impl TrajectorySegment {
         })
     }
 
+    /// Adds the states at times in increasing order, those up to the end, to a sample.
+    fn sample(&self, times: &[f64], into: &mut Sampled) {
+        let Sampled { times: kept, columns } = into;
+        if !self.is_held() {
+            self.path.sample(times, kept, columns);
+            return;
+        }
+        for time in times {
+            let Some(states) = self.states_at(*time) else {
+                continue;
+            };
+            kept.push(*time);
+            for (column, state) in columns.iter_mut().zip(states) {
+                column.push(state);
+            }
+        }
+    }
+
     /// Whether something is held.
     fn is_held(&self) -> bool {
         self.layout.is_some()
@@ -726,6 +745,7 @@ impl TrajectorySegment {
 }
 
 /// The states at many times.
+#[derive(Clone, Debug, Default)]
 struct Sampled {
     /// The times at which states were requested.
     times: Vec<f64>,
@@ -736,7 +756,21 @@ struct Sampled {
 impl Sampled {
     /// All states at one of the times.
     fn row(&self, index: usize) -> Vec<f64> {
-        self.columns.iter().map(|column| column[index]).collect()
+        let mut row = vec![];
+        self.read_row(index, &mut row);
+        row
+    }
+
+    /// All states at one of the times, in place of what the row holds.
+    fn read_row(&self, index: usize, row: &mut Vec<f64>) {
+        row.clear();
+        row.extend(self.columns.iter().map(|column| column[index]));
+    }
+
+    /// Leaves out all times.
+    fn clear(&mut self) {
+        self.times.clear();
+        self.columns.iter_mut().for_each(Vec::clear);
     }
 }
 
@@ -808,27 +842,16 @@ impl Trajectory {
 
     /// The first states at many times, in increasing order.
     fn sample(&self, times: Vec<f64>, count: usize) -> Sampled {
-        let mut kept = Vec::with_capacity(times.len());
-        let mut columns = vec![Vec::with_capacity(times.len()); count];
+        let kept = Vec::with_capacity(times.len());
+        let columns = vec![Vec::with_capacity(times.len()); count];
+        let mut sampled = Sampled { times: kept, columns };
         let mut rest = times.as_slice();
         for piece in &self.pieces {
             let (own, others) = rest.split_at(rest.partition_point(|time| *time <= piece.end()));
             rest = others;
-            if !piece.is_held() {
-                piece.path.sample(own, &mut kept, &mut columns);
-                continue;
-            }
-            for time in own {
-                let Some(states) = piece.states_at(*time) else {
-                    continue;
-                };
-                kept.push(*time);
-                for (column, state) in columns.iter_mut().zip(states) {
-                    column.push(state);
-                }
-            }
+            piece.sample(own, &mut sampled);
         }
-        Sampled { times: kept, columns }
+        sampled
     }
 
     /// The stretches of time, from when until when, on which dry friction holds something: at rest,

@@ -101,6 +101,11 @@ impl Expansions {
     pub(super) fn order(&self) -> usize {
         order(self.tolerance)
     }
+
+    /// Whether these are the recurrences of the same equations.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.known, &other.known)
+    }
 }
 
 /// Returns the order of the series for a tolerance.
@@ -252,6 +257,13 @@ impl SystemSeries {
     fn with_numbers(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<Self> {
         let mut other = self.clone();
         other.tape.set_numbers(numbers).then_some(other)
+    }
+
+    /// Takes other values of the parameters, and the sides of corners with which a motion begins. Returns
+    /// `false` if these values may lead to other recurrences.
+    pub(super) fn begin_anew(&mut self, numbers: &BTreeMap<Symbol, f64>) -> bool {
+        self.tape.reset_sides();
+        self.tape.set_numbers(numbers)
     }
 
     /// Takes the side of every corner on which this point lies, or to which it moves.

@@ -166,10 +166,11 @@ fn roots_of_at_most(
 ) -> Vec<(f64, bool)> {
     const MOST_INTERVALS: usize = 4000;
     let mut roots = Vec::new();
-    let mut open = vec![(from, to)];
+    // Most roots are alone in the whole interval.
+    let (mut next, mut open) = (Some((from, to)), Vec::new());
     let mut backwards = vec![];
     for _ in 0..MOST_INTERVALS {
-        let Some((low, high)) = open.pop() else { break };
+        let Some((low, high)) = next.take().or_else(|| open.pop()) else { break };
         let changes =
             most.take().unwrap_or_else(|| sign_changes(series, low, high, &mut backwards));
         if changes > 1 && high - low > 2e-13 * (to - from) {

@@ -8,27 +8,43 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// The lists that are free, shared by all paths of the same equations.
 #[derive(Clone, Debug, Default)]
-pub(super) struct SpareMemory(Arc<Mutex<Vec<Vec<f64>>>>);
+pub(super) struct SpareMemory(Arc<Mutex<FreeLists>>);
+
+/// Free lists and the bytes in them.
+#[derive(Debug, Default)]
+struct FreeLists {
+    lists: Vec<Vec<f64>>,
+    bytes: usize,
+}
 
 impl SpareMemory {
-    /// Number of lists that are kept: those of a few threads with eight motions each.
-    const MOST_LISTS: usize = 64;
+    /// Number of bytes of all lists that are kept: those of a few threads with eight long motions each, or of many
+    /// short flights from impact to impact.
+    const MOST_BYTES_TOGETHER: usize = 1 << 28;
     /// Number of bytes of a list beyond which it is not kept.
     const MOST_BYTES: usize = 1 << 22;
 
     /// An empty list, in free memory if there is any.
     pub(super) fn list(&self) -> SparingList {
-        let free = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        SparingList { numbers: free.unwrap_or_default(), home: self.clone() }
+        let mut free = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let numbers = free.lists.pop().unwrap_or_default();
+        free.bytes -= Self::bytes(&numbers);
+        SparingList { numbers, home: self.clone() }
     }
 
     fn put(&self, mut list: Vec<f64>) {
+        let bytes = Self::bytes(&list);
         let mut free = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let bytes = list.capacity() * size_of::<f64>();
-        if free.len() < Self::MOST_LISTS && (1..=Self::MOST_BYTES).contains(&bytes) {
+        let has_room = free.bytes + bytes <= Self::MOST_BYTES_TOGETHER;
+        if has_room && (1..=Self::MOST_BYTES).contains(&bytes) {
             list.clear();
-            free.push(list);
+            free.bytes += bytes;
+            free.lists.push(list);
         }
+    }
+
+    fn bytes(list: &Vec<f64>) -> usize {
+        list.capacity() * size_of::<f64>()
     }
 }
 

@@ -163,6 +163,7 @@ impl TaylorSteps {
             self.drop_series();
         }
         let (first, place) = (self.coefficients.len(), self.points.len());
+        self.coefficients.reserve((self.states + usize::from(time.is_some())) * (self.order + 1));
         self.steps.push(TaylorStep { start, length, first, point: place });
         let ExpansionPoint { root_signs, sides, values } = point;
         [root_signs, sides, values].into_iter().for_each(|own| self.points.extend_from_slice(own));

@@ -15,8 +15,8 @@ use super::polynomial::value;
 use super::roots::{Equations, Root};
 use super::steps::{ExpansionPoint, TaylorSteps};
 use super::{
-    Event, EventCrossing, Path, PathEnd, PathRepresentation, System, SystemError, SystemOptions,
-    end_of_range, is_vanishing, within_range, without_value,
+    Event, EventCrossing, Path, PathEnd, PathRepresentation, Solver, System, SystemError,
+    SystemOptions, end_of_range, is_vanishing, within_range, without_value,
 };
 use crate::series::tape::{SeriesSums, Tape};
 
@@ -56,7 +56,7 @@ pub const LANES: usize = 8;
 pub(super) fn follow(mut run: TaylorRun) -> Result<Path, SystemError> {
     loop {
         if let Some(reason) = run.before_step() {
-            return Ok(run.finish(reason));
+            return Ok(run.finish(reason).0);
         }
         run.expansion.compute();
         let end = match run.prepare()? {
@@ -68,7 +68,7 @@ pub(super) fn follow(mut run: TaylorRun) -> Result<Path, SystemError> {
             Prepared::Ended(reason) => Some(reason),
         };
         if let Some(reason) = end {
-            return Ok(run.finish(reason));
+            return Ok(run.finish(reason).0);
         }
     }
 }
@@ -148,30 +148,112 @@ impl Lanes {
 }
 
 /// Follows several runs, up to [`LANES`] of those with the same recurrences side by side, and
-/// returns their paths in order; each is bit for bit the same as alone.
-pub(super) fn follow_together(mut runs: Vec<TaylorRun>) -> Vec<Result<Path, SystemError>> {
-    let mut tapes: Vec<Lanes> = vec![];
+/// returns their paths in order, with the memory of each; each path is bit for bit the same as alone.
+fn follow_together<'a>(
+    mut runs: Vec<TaylorRun<'a>>,
+    tapes: &mut Vec<Lanes>,
+) -> impl Iterator<Item = Result<(Path, RunMemory), SystemError>> + use<'a> {
+    for lanes in tapes.iter_mut() {
+        lanes.holders = [None; LANES];
+    }
     let mut ends: Vec<Option<Result<PathEnd, SystemError>>> = runs.iter().map(|_| None).collect();
     while let Some(first) = ends.iter().position(Option::is_none) {
         let alike = |index: &usize| {
             ends[*index].is_none() && runs[*index].expansion.is_like(&runs[first].expansion)
         };
-        let mut lanes: Vec<usize> = (first..runs.len()).filter(alike).take(LANES).collect();
-        lanes.retain(|index| {
-            ends[*index] = runs[*index].before_step().map(Ok);
-            ends[*index].is_none()
-        });
+        let (mut lanes, mut count) = ([0; LANES], 0);
+        for index in (first..runs.len()).filter(alike).take(LANES) {
+            lanes[count] = index;
+            count += 1;
+        }
+        let mut going = 0;
+        for place in 0..count {
+            let index = lanes[place];
+            ends[index] = runs[index].before_step().map(Ok);
+            if ends[index].is_none() {
+                lanes[going] = index;
+                going += 1;
+            }
+        }
+        let lanes = &lanes[..going];
         let Some(series) = lanes.first().map(|index| &runs[*index].expansion) else { continue };
         let known = tapes.iter().position(|own| own.series.is_like(series));
         let known = known.unwrap_or_else(|| {
             tapes.push(Lanes::new(series));
             tapes.len() - 1
         });
-        tapes[known].step(&lanes, &mut runs, &mut ends);
+        tapes[known].step(lanes, &mut runs, &mut ends);
     }
     let finished =
         |(run, end): (TaylorRun, Result<PathEnd, SystemError>)| end.map(|end| run.finish(end));
-    runs.into_iter().zip(ends.into_iter().flatten()).map(finished).collect()
+    runs.into_iter().zip(ends.into_iter().flatten()).map(finished)
+}
+
+/// Integrates several motions side by side, round after round, and keeps the memory of a round for the next
+/// one: a motion from event to event needs a path for each of its flights.
+#[derive(Default)]
+pub struct SideBySide {
+    tapes: Vec<Lanes>,
+    idle: Vec<RunMemory>,
+}
+
+impl SideBySide {
+    /// Integrates several motions as [`solve_together`](super::solve_together) does, to the same bits.
+    pub fn solve(
+        &mut self,
+        motions: &[(&Solver, [f64; 2], &[f64])],
+    ) -> Vec<Result<Path, SystemError>> {
+        let Self { tapes, idle } = self;
+        let mut runs: Vec<TaylorRun> = Vec::with_capacity(motions.len());
+        let mut paths: Vec<Option<Result<Path, SystemError>>> = Vec::with_capacity(motions.len());
+        for &(solver, times, values) in motions {
+            let Solver { system, events, options, expansions, .. } = solver;
+            let run = match expansions {
+                Some(Ok(own)) if system.check(times, values, options).is_ok() => {
+                    let own = own.clone();
+                    TaylorRun::new(system, times, values, events, options, own, idle).ok()
+                }
+                _ => None,
+            };
+            paths.push(run.is_none().then(|| solver.solve(times, values)));
+            runs.extend(run);
+        }
+        let mut together = follow_together(runs, tapes);
+        for path in paths.iter_mut().filter(|path| path.is_none()) {
+            *path = together.next().map(|followed| {
+                followed.map(|(path, memory)| {
+                    idle.push(memory);
+                    path
+                })
+            });
+        }
+        paths.into_iter().flatten().collect()
+    }
+}
+
+/// The memory of a run that has ended, in which another one of the same equations may begin.
+pub(super) struct RunMemory {
+    root_signs: Vec<f64>,
+    expansions: Expansions,
+    expansion: SystemSeries,
+    values: Vec<f64>,
+    signs: Vec<f64>,
+    at_end: Vec<SeriesSums>,
+    last: StepUndo,
+}
+
+impl RunMemory {
+    /// Takes the memory of a run of these equations on the same side of their roots; `None` if there is none.
+    fn take(
+        idle: &mut Vec<Self>,
+        system: &System,
+        expansions: &Expansions,
+        signs: &[f64],
+    ) -> Option<Self> {
+        let fits = |own: &Self| own.root_signs == signs && own.expansions.is_like(expansions);
+        let mut memory = idle.swap_remove(idle.iter().rposition(fits)?);
+        memory.expansion.begin_anew(&system.numbers).then_some(memory)
+    }
 }
 
 /// A run in progress.
@@ -250,40 +332,59 @@ struct StepUndo {
 }
 
 impl<'a> TaylorRun<'a> {
-    /// Prepares a run between two times from these values.
+    /// Prepares a run between two times from these values, in the memory of one that has ended if one of
+    /// those that are idle fits.
     ///
     /// # Errors
     /// [`SystemError`] if there is no series on any side of the roots.
     pub(super) fn new(
         system: &'a System,
         [start, end]: [f64; 2],
-        values: &[f64],
+        from: &[f64],
         events: &'a [Event],
         options: &'a SystemOptions,
         expansions: Expansions,
+        idle: &mut Vec<RunMemory>,
     ) -> Result<Self, SystemError> {
         let no_series = || SystemError::Start(system.state.first().copied().unwrap_or(system.time));
-        let sign = |root: &Root| match root.argument_at(system, start, values) < 0.0 {
+        let sign = |root: &Root| match root.argument_at(system, start, from) < 0.0 {
             true => -1.0,
             false => 1.0,
         };
         let mut root_signs: Vec<f64> = expansions.roots.iter().map(sign).collect();
-        let mut expansion =
-            expansions.on_side(system, events, &root_signs).ok_or_else(no_series)?;
-        let variables = |expansion: &SystemSeries| {
-            let acting = expansion.acting.iter().map(|root| &expansions.roots[*root]);
-            let own = acting.map(|root| root.variable_at(system, start, values));
-            values.iter().copied().chain(own).collect::<Vec<f64>>()
+        let mut memory = match RunMemory::take(idle, system, &expansions, &root_signs) {
+            Some(memory) => memory,
+            None => RunMemory {
+                expansion: expansions.on_side(system, events, &root_signs).ok_or_else(no_series)?,
+                root_signs: vec![],
+                expansions: expansions.clone(),
+                values: vec![],
+                signs: vec![],
+                at_end: vec![],
+                last: StepUndo::default(),
+            },
         };
+        let (expansion, values) = (&mut memory.expansion, &mut memory.values);
+        let set = |values: &mut Vec<f64>, expansion: &SystemSeries| {
+            let acting = expansion.acting.iter().map(|root| &expansions.roots[*root]);
+            values.clear();
+            values.extend_from_slice(from);
+            values.extend(acting.map(|root| root.variable_at(system, start, from)));
+        };
+        set(values, expansion);
         // A motion that begins where a root does may begin towards either side.
         for attempt in 0..=root_signs.len() {
-            expansion.begin(start, &variables(&expansion));
+            expansion.begin(start, values);
             let left = expansion.left_root(&root_signs).filter(|_| attempt < root_signs.len());
             let Some(left) = left else { break };
             root_signs[left] *= -1.0;
-            expansion = expansions.on_side(system, events, &root_signs).ok_or_else(no_series)?;
+            *expansion = expansions.on_side(system, events, &root_signs).ok_or_else(no_series)?;
+            set(values, expansion);
         }
         expansion.take_root_sides(&root_signs);
+        let RunMemory { expansion, values, mut signs, at_end, last, .. } = memory;
+        signs.clear();
+        signs.resize(events.len(), 0.0);
         Ok(Self {
             system,
             events,
@@ -292,14 +393,14 @@ impl<'a> TaylorRun<'a> {
             end,
             duration: end - start,
             time: 0.0,
-            values: variables(&expansion),
-            signs: vec![0.0; events.len()],
+            signs,
             steps: TaylorSteps::new(values.len(), expansions.order(), &expansions.memory),
+            values,
             occurrences: vec![],
             stuck: 0,
             met: None,
-            at_end: vec![],
-            last: StepUndo::default(),
+            at_end,
+            last,
             is_open: false,
             halvings: 0,
             expansions,
@@ -309,21 +410,31 @@ impl<'a> TaylorRun<'a> {
         })
     }
 
-    /// Returns the path of a run that has ended.
-    fn finish(mut self, reason: PathEnd) -> Path {
+    /// Returns the path of a run that has ended, and its memory.
+    fn finish(mut self, reason: PathEnd) -> (Path, RunMemory) {
         if self.steps.count() == 0 {
             // A run that ended at its start gets one step of length zero.
-            self.values.truncate(self.system.state.len());
-            self.steps = TaylorSteps::at_rest(self.values);
+            let states = self.values[..self.system.state.len()].to_vec();
+            self.steps = TaylorSteps::at_rest(states);
         }
         let on_side = |signs: &[f64]| self.expansions.on_side(self.system, self.events, signs);
         self.steps.finish(self.start, self.root_signs.len(), on_side);
-        Path {
+        let path = Path {
             end: if reason == PathEnd::Reached { self.end } else { self.start + self.time },
             motion: PathRepresentation::Taylor { steps: self.steps, start: self.start },
             reason,
             occurrences: self.occurrences,
-        }
+        };
+        let memory = RunMemory {
+            root_signs: self.root_signs,
+            expansions: self.expansions,
+            expansion: self.expansion,
+            values: self.values,
+            signs: self.signs,
+            at_end: self.at_end,
+            last: self.last,
+        };
+        (path, memory)
     }
 
     /// Sets the expansion at the start of the next step; returns the reason if the run ends there.

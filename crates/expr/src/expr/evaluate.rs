@@ -247,6 +247,21 @@ impl CompiledList {
         }
     }
 
+    /// Writes the values as [`CompiledList::call`] does, in memory of its own: on the stack, unless the list
+    /// is long.
+    pub fn call_once(&self, arguments: &[f64], values: &mut [f64]) {
+        const SHORT: usize = 32;
+        let size = self.list.size();
+        if size > SHORT || arguments.len() != self.list.argument_count {
+            return self.call(arguments, &mut vec![], values);
+        }
+        let mut scratch = [0.0; SHORT];
+        self.list.run(arguments, &mut scratch);
+        for (value, result) in values.iter_mut().zip(&self.results) {
+            *value = scratch[*result];
+        }
+    }
+
     /// The list of some of the results, by their index, where the arguments from one on have these values,
     /// whatever a call gives them: what follows from them alone is computed once. Every value of a call is
     /// bit for bit that of this list.

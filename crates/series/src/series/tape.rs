@@ -305,6 +305,11 @@ impl Tape {
         self.sides[corner][0] *= -1.0;
     }
 
+    /// Takes the positive side of every corner, as a new tape does.
+    pub fn reset_sides(&mut self) {
+        self.sides.fill([1.0]);
+    }
+
     /// Takes the side of every corner on which its series lies, or to which it moves from zero.
     /// Returns whether a side has changed.
     pub fn take_sides(&mut self) -> bool {

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use super::events::{BeforeEvents, CompiledEvents, EventRecord, GuardState};
 use super::hold::IDLE;
 use super::walls::{WallEvent, WallRecord};
-use super::{Ready, TrajectoryError, TrajectoryRequest, TrajectorySegment};
+use super::{Ready, Sampled, TrajectoryError, TrajectoryRequest, TrajectorySegment};
 use crate::system::{Integrator, Path, PathEnd, Solver};
 
 /// A motion that is followed from event to event.
@@ -40,6 +40,9 @@ pub(super) struct EventRun<'a> {
     record: WallRecord,
     guards: Vec<GuardState>,
     events: EventRecord,
+    /// Memory for states at some times, and for those at one of them.
+    samples: Sampled,
+    sampled: Vec<f64>,
 }
 
 /// The pieces of a motion that has ended, the reason, and the impacts and events on its way.
@@ -89,6 +92,8 @@ impl<'a> EventRun<'a> {
             record,
             guards: flight.events.as_ref().map_or(vec![], CompiledEvents::guards),
             events: EventRecord::default(),
+            samples: Sampled::default(),
+            sampled: vec![],
         };
         if let Some(events) = &flight.events {
             events.check_start(from, &run.state)?;
@@ -174,30 +179,26 @@ impl<'a> EventRun<'a> {
     pub(super) fn advance(&mut self, path: Option<Path>) -> Result<(), TrajectoryError> {
         self.prepare()?;
         let state = std::mem::take(&mut self.state);
-        let (stretch, reason) =
+        let (stretch, reason, last) =
             self.course.pieces(self.equations(), path, self.from, state, self.integrator)?;
         self.steps += stretch.iter().map(|piece| piece.path.step_count()).sum::<usize>();
         let end = stretch.last().map_or(self.from, TrajectorySegment::end);
-        let last = stretch.last().and_then(|piece| piece.states_at(end));
         let recorded = stretch.last().map_or(0, |piece| piece.recorded);
         let flight = self.flight;
-        if let Some(walls) = &flight.walls {
-            walls.note_largest(&stretch, &mut self.largest);
-        }
+        self.note_largest(&stretch);
         let passed = flight.walls.as_ref().is_some_and(|walls| {
+            let passed =
+                |time: f64, state: &[f64]| walls.passed(time, state, &self.largest).is_some();
             let middle = 0.5 * (self.from + end);
-            let middle = stretch
-                .iter()
-                .find(|piece| piece.end() >= middle)
-                .and_then(|piece| Some((middle, piece.states_at(middle)?)));
-            let places = middle.into_iter().chain(last.clone().map(|state| (end, state)));
-            places
-                .into_iter()
-                .any(|(time, state)| walls.passed(time, &state, &self.largest).is_some())
+            let middle = || {
+                let piece = stretch.iter().find(|piece| piece.end() >= middle)?;
+                Some(passed(middle, &piece.states_at(middle)?))
+            };
+            last.as_ref().is_some_and(|last| passed(end, last)) || middle().unwrap_or(false)
         });
         let missed = match (&flight.events, &last) {
             (Some(events), Some(last)) => {
-                self.note_largest_guards(events, &stretch);
+                events.note_largest(end, last, &mut self.guards);
                 !matches!(reason, PathEnd::Event(_)) && events.missed(end, last, &self.guards)
             }
             _ => false,
@@ -242,16 +243,27 @@ impl<'a> EventRun<'a> {
         }
     }
 
-    /// Raises the largest sizes of the guards to those on these stretches, which are looked at in some
-    /// places.
-    fn note_largest_guards(&mut self, events: &CompiledEvents, stretch: &[TrajectorySegment]) {
-        const PLACES: u32 = 4;
+    /// Raises the largest gaps of the walls and sizes of the guards to those on these stretches, which are
+    /// looked at in some places; those at their ends are not among them.
+    fn note_largest(&mut self, stretch: &[TrajectorySegment]) {
+        const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
+        let Ready { walls, events, states, .. } = self.flight;
+        if walls.is_none() && events.is_none() {
+            return;
+        }
+        self.samples.columns.resize(states.len(), vec![]);
         for piece in stretch {
-            for place in 1..=PLACES {
-                let share = f64::from(place) / f64::from(PLACES);
-                let time = piece.from + share * (piece.end() - piece.from);
-                if let Some(state) = piece.states_at(time) {
-                    events.note_largest(time, &state, &mut self.guards);
+            let times = PLACES.map(|share| piece.from + share * (piece.end() - piece.from));
+            self.samples.clear();
+            piece.sample(&times, &mut self.samples);
+            for index in 0..self.samples.times.len() {
+                let time = self.samples.times[index];
+                self.samples.read_row(index, &mut self.sampled);
+                if let Some(walls) = walls {
+                    walls.note_largest(time, &self.sampled, &mut self.largest);
+                }
+                if let Some(events) = events {
+                    events.note_largest(time, &self.sampled, &mut self.guards);
                 }
             }
         }

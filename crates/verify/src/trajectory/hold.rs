@@ -106,7 +106,8 @@ impl Layout {
 impl TrajectoryRequest {
     /// The motion segment by segment, each by the equations as typed or with surfaces held by
     /// friction, until a guard falls through zero or the motion ends; and the reason why. The first
-    /// segment, by the equations as typed, is given if it has been followed.
+    /// segment, by the equations as typed, is given if it has been followed. Also returned is the state at the
+    /// end of the last segment.
     pub(super) fn pieces(
         &self,
         equations: &Ready,
@@ -114,7 +115,7 @@ impl TrajectoryRequest {
         from: f64,
         state: Vec<f64>,
         integrator: Integrator,
-    ) -> Result<(Vec<TrajectorySegment>, PathEnd), TrajectoryError> {
+    ) -> Result<(Vec<TrajectorySegment>, PathEnd, Option<Vec<f64>>), TrajectoryError> {
         let options = self.options(integrator);
         let (mut pieces, mut regimes) = (Vec::new(), Regimes::new());
         let (mut first, mut from, mut state) = (first, from, state);
@@ -123,6 +124,7 @@ impl TrajectoryRequest {
             regimes = regimes_at(equations, found, from, &state, None)?.unwrap_or_default();
         }
         let (mut idle, mut holds) = (0, 0);
+        let mut last = None;
         let reason = loop {
             let piece = match regimes.iter().all(|(_, regime)| *regime == SurfaceRegime::Typed) {
                 true => TrajectorySegment {
@@ -140,16 +142,16 @@ impl TrajectoryRequest {
                 },
             };
             let (end, reason) = (piece.end(), piece.path.reason());
-            let last = piece.states_at(end);
+            last = piece.states_at(end);
             // The events before those of the surfaces.
             let others = piece.recorded + equations.guards.len();
             holds += usize::from(piece.is_held());
             pieces.push(piece);
-            let Some(last) = last else { break reason };
+            let Some(here) = &last else { break reason };
             if matches!(reason, PathEnd::Event(event) if event < others) {
                 break reason;
             }
-            state = last;
+            state.clone_from(here);
             // Other surfaces can take over only if there are more frictions than needed.
             let hit = match reason {
                 PathEnd::Event(event) => hit(&regimes, event - others),
@@ -175,7 +177,7 @@ impl TrajectoryRequest {
             }
             from = end;
         };
-        Ok((pieces, reason))
+        Ok((pieces, reason, last))
     }
 
     /// The motion from a time on, until a held surface is released or one that was left is reached

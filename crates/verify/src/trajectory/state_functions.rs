@@ -55,9 +55,18 @@ impl StateFunctions {
         time: f64,
         state: &[f64],
     ) -> Vec<f64> {
-        let arguments = [&[time], &state[..self.states], &self.numbers].concat();
+        const SHORT: usize = 16;
         let mut values = vec![0.0; size];
-        list.call(&arguments, &mut vec![], &mut values);
+        let (state, numbers) = (&state[..self.states], &self.numbers);
+        let count = 1 + state.len() + numbers.len();
+        if count > SHORT {
+            list.call_once(&[&[time], state, numbers].concat(), &mut values);
+            return values;
+        }
+        let mut arguments = [time; SHORT];
+        arguments[1..=state.len()].copy_from_slice(state);
+        arguments[1 + state.len()..count].copy_from_slice(numbers);
+        list.call_once(&arguments[..count], &mut values);
         values
     }
 

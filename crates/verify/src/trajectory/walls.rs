@@ -17,7 +17,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::resting::{WallEquations, equations};
 use super::state_functions::StateFunctions;
-use super::{TrajectoryError, TrajectoryRequest, TrajectorySegment, work_of};
+use super::{TrajectoryError, TrajectoryRequest, work_of};
 use crate::expr::{CompiledList, Expr};
 use crate::symbol::Symbol;
 use crate::system::rate_along;
@@ -107,6 +107,8 @@ pub(super) struct CompiledWalls {
     restitution: Vec<f64>,
     /// For each wall: g, g', g'' and g''' in flight, n, and M^-1 n.
     functions: Vec<CompiledList>,
+    /// The gaps of all walls.
+    gaps: CompiledList,
     evaluation: StateFunctions,
     /// The index among all states of the work of the walls; `None` if it is not accounted for.
     pub(super) work: Option<usize>,
@@ -120,11 +122,26 @@ struct AtWall {
     rate: f64,
     free: f64,
     jerk: f64,
-    normal: Vec<f64>,
-    direction: Vec<f64>,
+    /// n, then d = M^-1 n.
+    vectors: Vec<f64>,
 }
 
 impl AtWall {
+    /// n = dg/dq for each coordinate.
+    fn normal(&self) -> &[f64] {
+        &self.vectors[..self.vectors.len() / 2]
+    }
+
+    /// d = M^-1 n for each coordinate.
+    fn direction(&self) -> &[f64] {
+        &self.vectors[self.vectors.len() / 2..]
+    }
+
+    /// The largest component of n.
+    fn largest_normal(&self) -> f64 {
+        self.normal().iter().fold(0.0_f64, |most, n| most.max(n.abs()))
+    }
+
     /// n . d: the change of the rate of the gap by a unit of momentum of the wall.
     fn compliance(&self) -> f64 {
         self.compliance_with(self)
@@ -132,7 +149,7 @@ impl AtWall {
 
     /// The change of the rate of this gap by a unit of momentum of another wall.
     fn compliance_with(&self, other: &Self) -> f64 {
-        self.normal.iter().zip(&other.direction).map(|(n, d)| n * d).sum()
+        self.normal().iter().zip(other.direction()).map(|(n, d)| n * d).sum()
     }
 }
 
@@ -170,8 +187,12 @@ impl CompiledWalls {
                 .compiled(&all)
                 .map_err(|error| TrajectoryError::WallUndefined(wall.impact.gap.clone(), error))
         };
+        let functions = walls.iter().map(compiled).collect::<Result<_, _>>()?;
+        let gaps: Vec<Expr> = walls.iter().map(|wall| wall.impact.gap.clone()).collect();
+        let undefined = |error| TrajectoryError::WallUndefined(gaps[0].clone(), error);
         Ok(Some(Self {
-            functions: walls.iter().map(compiled).collect::<Result<_, _>>()?,
+            functions,
+            gaps: evaluation.compiled(&gaps).map_err(undefined)?,
             walls,
             restitution: restitutions(course)?,
             work: work_of(course, WORK_OF_WALLS),
@@ -192,15 +213,15 @@ impl CompiledWalls {
     fn at(&self, wall: usize, time: f64, state: &[f64]) -> AtWall {
         let [coordinates, _] = self.counts;
         let list = &self.functions[wall];
-        let values = self.evaluation.values(list, 4 + 2 * coordinates, time, state);
-        AtWall {
-            gap: values[0],
-            rate: values[1],
-            free: values[2],
-            jerk: values[3],
-            normal: values[4..4 + coordinates].to_vec(),
-            direction: values[4 + coordinates..].to_vec(),
-        }
+        let mut vectors = self.evaluation.values(list, 4 + 2 * coordinates, time, state);
+        let [gap, rate, free, jerk] = [vectors[0], vectors[1], vectors[2], vectors[3]];
+        vectors.drain(..4);
+        AtWall { gap, rate, free, jerk, vectors }
+    }
+
+    /// The values at all walls at a state.
+    fn at_each(&self, time: f64, state: &[f64]) -> Vec<AtWall> {
+        (0..self.walls.len()).map(|wall| self.at(wall, time, state)).collect()
     }
 
     /// The size of a gap: that of the positions in it, whose rounding it has, or the largest so far. Where
@@ -210,7 +231,7 @@ impl CompiledWalls {
         const PART_OF_FLIGHT: f64 = 1e-3;
         let [coordinates, states] = self.counts;
         let in_gap = |values: &[f64]| {
-            let parts = at.normal.iter().zip(values).map(|(n, value)| (n * value).abs());
+            let parts = at.normal().iter().zip(values).map(|(n, value)| (n * value).abs());
             parts.fold(0.0, f64::max)
         };
         let speed = in_gap(&state[coordinates..states]);
@@ -221,15 +242,19 @@ impl CompiledWalls {
 
     /// The first wall behind which a motion is, beyond rounding.
     pub(super) fn passed(&self, time: f64, state: &[f64], largest: &[f64]) -> Option<usize> {
-        let size = self.size_of_gaps(time, state, largest);
-        self.gaps(time, state).into_iter().position(|gap| gap < -BEHIND * size)
+        let gaps = self.gaps(time, state);
+        if gaps.iter().all(|gap| *gap >= 0.0) {
+            return None;
+        }
+        let size = self.size_of_gaps(&self.at_each(time, state), state, largest);
+        gaps.into_iter().position(|gap| gap < -BEHIND * size)
     }
 
     /// The largest size of a gap: one that is closed all the time has none of its own.
-    fn size_of_gaps(&self, time: f64, state: &[f64], largest: &[f64]) -> f64 {
-        (0..self.walls.len()).fold(0.0_f64, |most, wall| {
+    fn size_of_gaps(&self, walls: &[AtWall], state: &[f64], largest: &[f64]) -> f64 {
+        walls.iter().enumerate().fold(0.0_f64, |most, (wall, at)| {
             let largest = largest.get(wall).copied().unwrap_or(0.0);
-            most.max(self.size_of_gap(&self.at(wall, time, state), state, largest))
+            most.max(self.size_of_gap(at, state, largest))
         })
     }
 
@@ -279,31 +304,31 @@ impl CompiledWalls {
         let mut touched: Vec<usize> = resting.to_vec();
         let mut struck: Vec<usize> = Vec::new();
         let mut chatter: BTreeMap<usize, f64> = BTreeMap::new();
-        let size_of_gaps = self.size_of_gaps(time, state, largest);
+        let mut walls = self.at_each(time, state);
+        let size_of_gaps = self.size_of_gaps(&walls, state, largest);
         for _ in 0..MOST_AT_ONE_TIME {
             let speed =
                 state[coordinates..states].iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-            let closing = (0..self.walls.len()).find_map(|wall| {
-                let at = self.at(wall, time, state);
+            let closing = walls.iter().enumerate().position(|(wall, at)| {
                 let near = at.gap.abs() <= ON_WALL * size_of_gaps;
                 let on = event == WallEvent::Hit(wall) || touched.contains(&wall) || near;
                 if on && !touched.contains(&wall) {
                     touched.push(wall);
                 }
-                let size = at.normal.iter().fold(0.0_f64, |most, n| most.max(n.abs())) * speed;
-                (on && at.rate < -AT_REST * size).then_some((wall, at))
+                on && at.rate < -AT_REST * at.largest_normal() * speed
             });
-            let Some((wall, at)) = closing else { break };
+            let Some(wall) = closing else { break };
+            let at = &walls[wall];
             let before = self.evaluation.energy(time, state);
             let compliance = at.compliance();
             let mut departure = -self.restitution[wall] * at.rate;
-            let over = self.accumulation(wall, &at, departure, largest, resting, (time, state));
+            let over = self.accumulation(wall, at, departure, largest, resting, (time, state));
             if let Some(sum) = over {
                 departure = 0.0;
                 chatter.insert(wall, sum);
             }
             let change = (departure - at.rate) / compliance;
-            for (velocity, direction) in state[coordinates..states].iter_mut().zip(&at.direction) {
+            for (velocity, direction) in state[coordinates..states].iter_mut().zip(at.direction()) {
                 *velocity += change * direction;
             }
             let after = self.evaluation.energy(time, state);
@@ -312,10 +337,11 @@ impl CompiledWalls {
                 state[work] -= loss;
             }
             record.impacts.push(Impact { time, wall, speed: -at.rate, departure, loss });
-            if struck.iter().any(|other| *other != wall && self.couples(*other, &at, time, state)) {
+            if struck.iter().any(|other| *other != wall && self.couples(*other, at, time, state)) {
                 record.order_matters.get_or_insert(time);
             }
             struck.push(wall);
+            walls = self.at_each(time, state);
         }
         // The state is put onto the walls that were hit, which rounding has left a little off.
         for wall in struck.iter().chain(resting) {
@@ -366,6 +392,9 @@ impl CompiledWalls {
         if restitution == 0.0 {
             return Some(0.0);
         }
+        if restitution >= 1.0 {
+            return None;
+        }
         // The acceleration of the gap with the forces of the walls that bear.
         let others: Vec<(usize, AtWall)> = resting
             .iter()
@@ -376,7 +405,7 @@ impl CompiledWalls {
         let held = others.iter().zip(forces.iter());
         let pull = -at.free
             - held.map(|((_, other), force)| at.compliance_with(other) * force).sum::<f64>();
-        if restitution >= 1.0 || pull <= 0.0 {
+        if pull <= 0.0 {
             return None;
         }
         let sum = 2.0 * departure / (pull * (1.0 - restitution));
@@ -393,7 +422,7 @@ impl CompiledWalls {
         let at = self.at(wall, time, state);
         let shift = at.gap / at.compliance();
         if shift.is_finite() {
-            for (position, direction) in state[..coordinates].iter_mut().zip(&at.direction) {
+            for (position, direction) in state[..coordinates].iter_mut().zip(at.direction()) {
                 *position -= shift * direction;
             }
         }
@@ -414,7 +443,7 @@ impl CompiledWalls {
             .iter()
             .map(|wall| (*wall, self.with_sign_of_force(*wall, time, state)))
             .filter(|(wall, at)| {
-                let size = at.normal.iter().fold(0.0_f64, |most, n| most.max(n.abs())) * speed;
+                let size = at.largest_normal() * speed;
                 at_rest(*wall) && at.rate.abs() <= 1e-9 * size || at.rate.abs() <= AT_REST * size
             })
             .collect();
@@ -454,25 +483,16 @@ impl CompiledWalls {
         AtWall { free: if sign < 0.0 { -f64::MIN_POSITIVE } else { 0.0 }, ..at }
     }
 
-    /// Raises the largest gap of each wall to those on these stretches, which are looked at in some
-    /// places.
-    pub(super) fn note_largest(&self, stretch: &[TrajectorySegment], largest: &mut [f64]) {
-        const PLACES: u32 = 4;
-        for piece in stretch {
-            for place in 1..PLACES {
-                let share = f64::from(place) / f64::from(PLACES);
-                let time = piece.from + share * (piece.end() - piece.from);
-                let Some(state) = piece.states_at(time) else { continue };
-                for (largest, gap) in largest.iter_mut().zip(self.gaps(time, &state)) {
-                    *largest = largest.max(gap);
-                }
-            }
+    /// Raises the largest gap of each wall to those at a state.
+    pub(super) fn note_largest(&self, time: f64, state: &[f64], largest: &mut [f64]) {
+        for (largest, gap) in largest.iter_mut().zip(self.gaps(time, state)) {
+            *largest = largest.max(gap);
         }
     }
 
     /// The gap of each wall at a state.
     pub(super) fn gaps(&self, time: f64, state: &[f64]) -> Vec<f64> {
-        (0..self.walls.len()).map(|wall| self.at(wall, time, state).gap).collect()
+        self.evaluation.values(&self.gaps, self.walls.len(), time, state)
     }
 }
 

@@ -409,8 +409,7 @@ impl Path {
                 let own = &times[before..];
                 let own = &own[..own.partition_point(|time| *time <= self.end)];
                 kept.extend_from_slice(own);
-                let since_start: Vec<f64> = own.iter().map(|time| time - start).collect();
-                steps.sample(&since_start, columns);
+                steps.sample(*start, own, columns);
             }
             PathRepresentation::RungeKutta(_) => {
                 for time in times {
@@ -496,7 +495,7 @@ impl Solver {
         let (system, events, options) = (&self.system, &self.events, &self.options);
         match &self.expansions {
             Some(expansions) => {
-                let own = expansions.clone()?;
+                let own = expansions.as_ref().map_err(Clone::clone)?;
                 let idle = &mut vec![];
                 let run = TaylorRun::new(system, times, values, events, options, own, idle);
                 taylor::follow(run?)
@@ -606,7 +605,7 @@ impl System {
             Integrator::Taylor => {
                 let expansions = Expansions::new(self, events, options.tolerance)?;
                 let idle = &mut vec![];
-                let run = TaylorRun::new(self, times, values, events, options, expansions, idle);
+                let run = TaylorRun::new(self, times, values, events, options, &expansions, idle);
                 taylor::follow(run?)
             }
             Integrator::RungeKutta => runge_kutta::follow(self, times, values, events, options),

@@ -140,9 +140,9 @@ pub(super) struct SystemSeries {
     /// Whether the series were computed on the tape itself, not taken from a lane.
     is_own: bool,
     /// Bounds of the last terms of states, events and corners.
-    of_steps: Allowance,
+    of_steps: Arc<Allowance>,
     /// Bounds of the last terms of the arguments of narrow functions.
-    of_arguments: Allowance,
+    of_arguments: Arc<Allowance>,
 }
 
 impl SystemSeries {
@@ -186,8 +186,8 @@ impl SystemSeries {
             longest_step: f64::NAN,
             has_values: false,
             is_own: true,
-            of_steps: Allowance::new(tolerance, order),
-            of_arguments: Allowance::new(CLOSELY, order),
+            of_steps: Allowance::new(tolerance, order).into(),
+            of_arguments: Allowance::new(CLOSELY, order).into(),
         })
     }
 
@@ -463,15 +463,20 @@ impl SystemSeries {
         length
     }
 
-    /// Returns the crossings of all events on the step in order: the index of the event, the time
+    /// Finds the crossings of all events on the step in order: the index of the event, the time
     /// since the start of the step, and whether its function rises there. `signs` are the signs
     /// after the last step: a crossing that rounding has put between two steps counts at the
     /// beginning of the second.
-    pub(super) fn crossings(&self, signs: &mut [f64], length: f64) -> Vec<(usize, f64, bool)> {
-        let mut met = Vec::new();
+    pub(super) fn crossings(
+        &self,
+        signs: &mut [f64],
+        length: f64,
+        met: &mut Vec<(usize, f64, bool)>,
+    ) {
+        met.clear();
         // On a step of length zero the sign would be due to rounding.
         if length == 0.0 {
-            return met;
+            return;
         }
         for (event, before) in signs.iter_mut().enumerate() {
             let series = self.event(event);
@@ -489,7 +494,6 @@ impl SystemSeries {
             }
         }
         met.sort_by(|one, other| one.1.total_cmp(&other.1));
-        met
     }
 
     /// Returns the first corner met within a step, and the time since its start: 0 if the motion

@@ -1,5 +1,7 @@
 //! Polynomials on a step: their values, and the roots of the series of an event.
 
+use std::sync::OnceLock;
+
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::numeric::ode::root::find_root;
@@ -143,18 +145,40 @@ pub(super) fn extend_range(
     if constant.min(end) - reach >= range[0] && constant.max(end) + reach <= range[1] {
         return;
     }
-    let mut extend = |place: f64| {
-        let value = value(series, place);
-        *range = [range[0].min(value), range[1].max(value)];
-    };
-    [from, to].into_iter().for_each(&mut extend);
     // A polynomial whose linear term outweighs all later ones grows or falls throughout.
-    if 2.0 * terms.linear > terms.slopes(series) {
-        return;
+    let turns = match 2.0 * terms.linear > terms.slopes(series) {
+        true => vec![],
+        false => {
+            slope.clear();
+            let of_slope = series.iter().enumerate().skip(1);
+            slope.extend(of_slope.map(|(k, coefficient)| k as f64 * coefficient));
+            roots_of_at_most(None, slope, from, to)
+        }
+    };
+    let mut extend = |value: f64| *range = [range[0].min(value), range[1].max(value)];
+    if from != 0.0 {
+        extend(value(series, from));
+    } else {
+        extend(constant);
     }
-    slope.clear();
-    slope.extend(series.iter().enumerate().skip(1).map(|(k, coefficient)| k as f64 * coefficient));
-    roots(slope, from, to).into_iter().for_each(|(place, _)| extend(place));
+    match *turns.as_slice() {
+        [(turn, _)] => value_at_both(series, [to, turn]).into_iter().for_each(&mut extend),
+        _ => {
+            extend(value(series, to));
+            turns.iter().for_each(|(turn, _)| extend(value(series, *turn)));
+        }
+    }
+}
+
+/// The values at two places, equal to those of [`value`]; neither sum waits for the other.
+fn value_at_both(series: &[f64], places: [f64; 2]) -> [f64; 2] {
+    let mut sums = [0.0; 2];
+    for coefficient in series.iter().rev() {
+        for (sum, place) in sums.iter_mut().zip(places) {
+            *sum = *sum * place + coefficient;
+        }
+    }
+    sums
 }
 
 /// Returns the roots of a polynomial, of which there are at most so many if that is known.
@@ -168,28 +192,38 @@ fn roots_of_at_most(
     let mut roots = Vec::new();
     // Most roots are alone in the whole interval.
     let (mut next, mut open) = (Some((from, to)), Vec::new());
-    let mut backwards = vec![];
     for _ in 0..MOST_INTERVALS {
         let Some((low, high)) = next.take().or_else(|| open.pop()) else { break };
-        let changes =
-            most.take().unwrap_or_else(|| sign_changes(series, low, high, &mut backwards));
-        if changes > 1 && high - low > 2e-13 * (to - from) {
+        let changes = match most.take() {
+            Some(count) => SignChanges { count, place: None },
+            None => sign_changes(series, low, high),
+        };
+        if changes.count > 1 && high - low > 2e-13 * (to - from) {
             let middle = 0.5 * (low + high);
             open.extend([(middle, high), (low, middle)]);
-        } else if changes > 0 {
+        } else if changes.count > 0 {
             // Beside a zero at either end of an interval the sign is that a little further on.
-            let beside = |place: f64| match place == from || value_in_fours(series, place) == 0.0 {
-                true if place < to => place + apart(from, to),
-                _ => place,
+            let beside = |place: f64| {
+                let value = if place == from { 0.0 } else { value_in_fours(series, place) };
+                if value == 0.0 && place < to {
+                    let place = place + apart(from, to);
+                    return (place, value_in_fours(series, place));
+                }
+                (place, value)
             };
-            let (low, end) = (beside(low), beside(high));
-            let (at_low, at_end) = (value_in_fours(series, low), value_in_fours(series, end));
+            let ((low, at_low), (end, at_end)) = (beside(low), beside(high));
             let crosses = match at_end == 0.0 {
                 true => at_low != 0.0 && high == to,
                 false => at_low != 0.0 && at_low.signum() != at_end.signum(),
             };
             if crosses && low < high {
-                let root = find_root(|s| value_in_fours(series, s), low, high);
+                let part = changes.place.unwrap_or(at_low / (at_low - at_end));
+                let root = match at_end == 0.0 {
+                    true => Some(end),
+                    false => {
+                        root_between(series, [low, end], at_low > 0.0, low + part * (end - low))
+                    }
+                };
                 roots.extend(root.map(|root| (root, at_low < 0.0)));
             }
         }
@@ -197,63 +231,170 @@ fn roots_of_at_most(
     roots
 }
 
+/// Returns the root between two places, at the first of which the polynomial is positive or not, by Newton's
+/// method from a guess; where that leaves the interval or does not end, by bracketing.
+fn root_between(
+    series: &[f64],
+    [low, high]: [f64; 2],
+    is_positive: bool,
+    guess: f64,
+) -> Option<f64> {
+    const STEPS: usize = 8;
+    let (mut low, mut high, mut place) = (low, high, guess);
+    for _ in 0..STEPS {
+        if !(low < place && place < high) {
+            break;
+        }
+        let [value, slope] = value_and_slope_in_fours(series, place);
+        if value == 0.0 {
+            return Some(place);
+        }
+        match (value > 0.0) == is_positive {
+            true => low = place,
+            false => high = place,
+        }
+        let step = value / slope;
+        if step.abs() <= f64::EPSILON * place.abs() {
+            return Some(place);
+        }
+        place -= step;
+    }
+    find_root(|s| value_in_fours(series, s), low, high).ok()
+}
+
 /// The value at `s`, as four sums side by side.
 fn value_in_fours(series: &[f64], s: f64) -> f64 {
     in_fours(series.len(), s, |k| series.get(k).copied().unwrap_or(0.0))
 }
 
-/// Returns the number of sign changes of the Bernstein coefficients on an interval: with
-/// `s = low + (high - low) u` and `p = sum_k c_k u^k` these are `b_i = sum_k C(i, k) c_k/C(n, k)`.
-/// They are computed in `backwards`, the last first, so that an addition reads what the next one
-/// writes, and many can be done at once.
-fn sign_changes(series: &[f64], low: f64, high: f64, backwards: &mut Vec<f64>) -> usize {
-    struct CountSignChanges<'a> {
-        series: &'a [f64],
-        low: f64,
-        high: f64,
-        backwards: &'a mut Vec<f64>,
+/// The value and the slope at `s`, each as four sums side by side.
+fn value_and_slope_in_fours(series: &[f64], s: f64) -> [f64; 2] {
+    let square = s * s;
+    let fourth = square * square;
+    let (mut sums, mut slopes) = ([0.0; 4], [0.0; 4]);
+    let fours = series.chunks_exact(4);
+    let rest = fours.remainder();
+    let mut order = series.len() - rest.len();
+    for (place, coefficient) in rest.iter().enumerate() {
+        sums[place] = *coefficient;
+        slopes[place] = (order + place) as f64 * coefficient;
     }
-    impl WithSimd for CountSignChanges<'_> {
-        type Output = usize;
-
-        #[inline(always)]
-        fn with_simd<S: Simd>(self, _: S) -> usize {
-            count_sign_changes(self.series, self.low, self.high, self.backwards)
+    for four in fours.rev() {
+        order -= 4;
+        for place in 0..4 {
+            sums[place] = sums[place] * fourth + four[place];
+            slopes[place] = slopes[place] * fourth + (order + place) as f64 * four[place];
         }
     }
-    Arch::new().dispatch(CountSignChanges { series, low, high, backwards })
+    let [value, slope] =
+        [sums, slopes].map(|sums| (sums[0] + s * sums[1]) + square * (sums[2] + s * sums[3]));
+    [value, slope / s]
 }
 
-#[inline(always)]
-fn count_sign_changes(series: &[f64], low: f64, high: f64, backwards: &mut Vec<f64>) -> usize {
-    backwards.clear();
-    backwards.extend(series.iter().rev());
+/// The number of sign changes of Bernstein coefficients, and the place of the first of them.
+struct SignChanges {
+    count: usize,
+    /// The place where the line through the coefficients on both sides is zero, as a part of the interval.
+    place: Option<f64>,
+}
+
+/// Number of Bernstein coefficients that are summed side by side.
+const SIDE_BY_SIDE: usize = 8;
+
+/// The weights `C(i, k)/C(n, k)` of the coefficients of a polynomial of degree n in its Bernstein
+/// coefficients, for eight i after the other and for each k up to the last of them.
+type BernsteinWeights = Vec<Vec<[f64; SIDE_BY_SIDE]>>;
+
+fn bernstein_weights(degree: usize) -> BernsteinWeights {
+    // C(i, k)/C(n, k) is the product of (i - j)/(n - j) for all j < k.
+    let weight = |i: usize, k: usize| {
+        let factors = (0..k.min(degree)).map(|j| i.saturating_sub(j) as f64 / (degree - j) as f64);
+        factors.product::<f64>()
+    };
+    let block = |first: usize| {
+        let row = |k: usize| std::array::from_fn(|i| weight(first + i, k));
+        (0..=degree.min(first + SIDE_BY_SIDE - 1)).map(row).collect()
+    };
+    (0..=degree).step_by(SIDE_BY_SIDE).map(block).collect()
+}
+
+/// Returns the sign changes of the Bernstein coefficients on an interval: with
+/// `s = low + (high - low) u` and `p = sum_k c_k u^k` these are `b_i = sum_k C(i, k) c_k/C(n, k)`.
+fn sign_changes(series: &[f64], low: f64, high: f64) -> SignChanges {
+    /// Number of degrees whose weights are kept: more than those of the series to rounding accuracy.
+    const KEPT: usize = 32;
+    static WEIGHTS: [OnceLock<BernsteinWeights>; KEPT] = [const { OnceLock::new() }; KEPT];
+    let degree = series.len().saturating_sub(1);
+    let computed;
+    let weights = match WEIGHTS.get(degree) {
+        Some(kept) => kept.get_or_init(|| bernstein_weights(degree)),
+        None => {
+            computed = bernstein_weights(degree);
+            &computed
+        }
+    };
+    let mut short = [0.0; KEPT];
+    let mut long = vec![];
+    let scaled = match short.get_mut(..series.len()) {
+        Some(scaled) => scaled,
+        None => {
+            long.resize(series.len(), 0.0);
+            long.as_mut_slice()
+        }
+    };
+    scaled.copy_from_slice(series);
     if low != 0.0 {
-        about(backwards, low);
+        about(scaled, low);
     }
-    let degree = backwards.len() - 1;
     let mut factor = 1.0;
-    for (k, coefficient) in backwards.iter_mut().rev().enumerate().skip(1) {
-        factor *= (high - low) * (k as f64 / (degree + 1 - k) as f64);
+    for coefficient in scaled.iter_mut().skip(1) {
+        factor *= high - low;
         *coefficient *= factor;
     }
-    // Pascal's triangle, column by column.
-    for last in (1..=degree).rev() {
-        let column = &mut backwards[..=last];
-        for index in 0..last {
-            column[index] += column[index + 1];
+    Arch::new().dispatch(CountSignChanges { weights, scaled })
+}
+
+struct CountSignChanges<'a> {
+    weights: &'a BernsteinWeights,
+    /// `c_k`.
+    scaled: &'a [f64],
+}
+
+impl WithSimd for CountSignChanges<'_> {
+    type Output = SignChanges;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> SignChanges {
+        let degree = self.scaled.len().saturating_sub(1);
+        let mut changes = SignChanges { count: 0, place: None };
+        // The last coefficient that is not zero, and its index.
+        let (mut before, mut at) = (0.0, 0);
+        for (block, weights) in self.weights.iter().enumerate() {
+            let mut sums = [0.0; SIDE_BY_SIDE];
+            for (weights, coefficient) in weights.iter().zip(self.scaled) {
+                for (sum, weight) in sums.iter_mut().zip(weights) {
+                    *sum += weight * coefficient;
+                }
+            }
+            for (sum, index) in sums.into_iter().zip(SIDE_BY_SIDE * block..=degree) {
+                if before * sum.signum() < 0.0 && sum != 0.0 {
+                    if changes.count == 0 {
+                        let between = before / (before - sum) * (index - at) as f64;
+                        changes.place = Some((at as f64 + between) / degree as f64);
+                    }
+                    changes.count += 1;
+                }
+                if sum != 0.0 {
+                    (before, at) = (sum, index);
+                }
+                // The last is the value at the end, where a root counts.
+                if index == degree && sum == 0.0 {
+                    changes.count += 1;
+                }
+            }
         }
+        changes
     }
-    // The first is the value at the end, where a root counts.
-    let mut changes = usize::from(backwards[0] == 0.0);
-    let mut before = 0.0;
-    for coefficient in backwards {
-        if *coefficient != 0.0 {
-            changes += usize::from(before * coefficient.signum() < 0.0);
-            before = coefficient.signum();
-        }
-    }
-    changes
 }
 
 /// Distance from the last root within which the sign is due to rounding.
@@ -264,7 +405,7 @@ fn apart(from: f64, to: f64) -> f64 {
 /// Returns the sign with which the search for roots begins on an interval; 0 if all coefficients are
 /// zero.
 fn sign_at_start(series: &[f64], from: f64, to: f64) -> f64 {
-    let here = value(series, from + apart(from, to));
+    let here = value_in_fours(series, from + apart(from, to));
     let leading = series.iter().find(|value| **value != 0.0);
     match (here, leading) {
         (0.0, None) => 0.0,
@@ -274,13 +415,11 @@ fn sign_at_start(series: &[f64], from: f64, to: f64) -> f64 {
     }
 }
 
-/// Expands a polynomial, whose last coefficient is the first here, about another centre, by Horner's
-/// scheme.
-#[inline(always)]
-fn about(backwards: &mut [f64], centre: f64) {
-    for end in (1..=backwards.len()).rev() {
-        for k in 1..end {
-            backwards[k] += centre * backwards[k - 1];
+/// Expands a polynomial about another centre, by Horner's scheme.
+fn about(series: &mut [f64], centre: f64) {
+    for first in 0..series.len() {
+        for k in (first + 1..series.len()).rev() {
+            series[k - 1] += centre * series[k];
         }
     }
 }

@@ -29,7 +29,7 @@ pub(super) struct TaylorSteps {
     /// The points of expansion, step by step.
     points: Vec<f64>,
     /// The recurrences that compute missing coefficients once more; `None` if all are kept.
-    recurrences: Option<SideRecurrences>,
+    recurrences: Option<Box<SideRecurrences>>,
 }
 
 /// A step from one expansion to the next.
@@ -135,7 +135,7 @@ impl TaylorSteps {
                 sides.extend(recurrences(signs).map(|series| (signs.to_vec(), series)));
             }
         }
-        self.recurrences = Some(SideRecurrences { origin, sides });
+        self.recurrences = Some(Box::new(SideRecurrences { origin, sides }));
     }
 
     /// The start of the first step that is kept; infinity before the first.
@@ -188,7 +188,7 @@ impl TaylorSteps {
         let mut reader = StepReader::new(self);
         let series = reader.series(step);
         let place = series.place(time);
-        Some((0..self.states).map(|state| value(series.state(state), place)).collect())
+        Some(series.states(place))
     }
 
     /// One state at a time since the start; `None` before the first step.
@@ -239,22 +239,22 @@ impl TaylorSteps {
         range
     }
 
-    /// Appends the values of the first states, a column for each, at times since the start in
-    /// increasing order.
-    pub(super) fn sample(&self, mut times: &[f64], columns: &mut [Vec<f64>]) {
+    /// Appends the values of the first states, a column for each, at times in increasing order; the path
+    /// starts at `start`.
+    pub(super) fn sample(&self, start: f64, mut times: &[f64], columns: &mut [Vec<f64>]) {
         let mut places = Vec::new();
         let mut reader = StepReader::new(self);
         let mut step = 0;
         while let (Some(first), true) = (times.first(), step < self.steps.len()) {
-            step = self.step_at(*first).unwrap_or(step);
+            step = self.step_at(*first - start).unwrap_or(step);
             let count = match self.steps.get(step + 1) {
-                Some(next) => times.partition_point(|time| *time < next.start),
+                Some(next) => times.partition_point(|time| *time - start < next.start),
                 None => times.len(),
             };
             let (own, others) = times.split_at(count);
             let series = reader.series(step);
             places.clear();
-            places.extend(own.iter().map(|time| series.place(*time)));
+            places.extend(own.iter().map(|time| series.place(*time - start)));
             for (state, column) in columns.iter_mut().enumerate().take(self.states) {
                 values(series.state(state), &places, column);
             }
@@ -312,7 +312,7 @@ impl<'a> StepReader<'a> {
         let step = steps[index];
         self.computed.clear();
         let own = self.recurrences.get_or_insert_with(|| {
-            let known = self.path.recurrences.clone();
+            let known = self.path.recurrences.as_deref().cloned();
             known.unwrap_or(SideRecurrences { origin: 0.0, sides: vec![] })
         });
         let end = steps.get(index + 1).map_or(points.len(), |next| next.point);
@@ -346,6 +346,19 @@ impl StepSeries<'_> {
     fn state(&self, state: usize) -> &[f64] {
         let length = self.order + 1;
         &self.coefficients[state * length..][..length]
+    }
+
+    /// The values of all states at a value of the variable, each equal to that of [`value`]; no sum waits for
+    /// another.
+    fn states(&self, place: f64) -> Vec<f64> {
+        let length = self.order + 1;
+        let mut sums = vec![0.0; self.states];
+        for order in (0..length).rev() {
+            for (sum, series) in sums.iter_mut().zip(self.coefficients.chunks_exact(length)) {
+                *sum = *sum * place + series[order];
+            }
+        }
+        sums
     }
 
     /// The time since the start of the step, as a series; `None` if it is the variable itself.

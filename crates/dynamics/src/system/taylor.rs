@@ -58,7 +58,7 @@ pub(super) fn follow(mut run: TaylorRun) -> Result<Path, SystemError> {
         if let Some(reason) = run.before_step() {
             return Ok(run.finish(reason).0);
         }
-        run.expansion.compute();
+        run.memory.expansion.compute();
         let end = match run.prepare()? {
             Prepared::Step(step) => {
                 run.sum_alone(step.length);
@@ -95,7 +95,7 @@ impl Lanes {
     /// Computes the series of these runs, each about its own point.
     fn expand(&mut self, lanes: &[usize], runs: &mut [TaylorRun]) {
         for (lane, index) in lanes.iter().enumerate() {
-            let own = &runs[*index].expansion.tape;
+            let own = &runs[*index].memory.expansion.tape;
             match self.holders[lane] == Some(*index) {
                 true => self.tape.load_point(lane, self.series.variables(), own),
                 false => self.tape.load(lane, own),
@@ -105,7 +105,7 @@ impl Lanes {
         self.tape.expand(self.series.rates());
         let bounds = self.series.bounds(&self.tape);
         for (lane, index) in lanes.iter().enumerate() {
-            runs[*index].expansion.take_from(&self.tape, lane, &bounds);
+            runs[*index].memory.expansion.take_from(&self.tape, lane, &bounds);
         }
     }
 
@@ -125,7 +125,7 @@ impl Lanes {
             let run = &mut runs[*index];
             match run.prepare() {
                 Ok(Prepared::Step(step)) => {
-                    variables = run.values.len();
+                    variables = run.memory.values.len();
                     lengths[lane] = step.length;
                     steps[lane] = Some(step);
                 }
@@ -138,7 +138,7 @@ impl Lanes {
         self.tape.sums(&lengths, &mut self.sums);
         for (lane, (index, step)) in lanes.iter().zip(&steps).enumerate() {
             let (run, Some(step)) = (&mut runs[*index], step) else { continue };
-            match run.expansion.is_of_lane() {
+            match run.memory.expansion.is_of_lane() {
                 true => run.sum_from(lane, &self.sums),
                 false => run.sum_alone(step.length),
             }
@@ -152,14 +152,15 @@ impl Lanes {
 fn follow_together<'a>(
     mut runs: Vec<TaylorRun<'a>>,
     tapes: &mut Vec<Lanes>,
-) -> impl Iterator<Item = Result<(Path, RunMemory), SystemError>> + use<'a> {
+) -> impl Iterator<Item = Result<(Path, Box<RunMemory>), SystemError>> + use<'a> {
     for lanes in tapes.iter_mut() {
         lanes.holders = [None; LANES];
     }
     let mut ends: Vec<Option<Result<PathEnd, SystemError>>> = runs.iter().map(|_| None).collect();
     while let Some(first) = ends.iter().position(Option::is_none) {
         let alike = |index: &usize| {
-            ends[*index].is_none() && runs[*index].expansion.is_like(&runs[first].expansion)
+            ends[*index].is_none()
+                && runs[*index].memory.expansion.is_like(&runs[first].memory.expansion)
         };
         let (mut lanes, mut count) = ([0; LANES], 0);
         for index in (first..runs.len()).filter(alike).take(LANES) {
@@ -176,7 +177,9 @@ fn follow_together<'a>(
             }
         }
         let lanes = &lanes[..going];
-        let Some(series) = lanes.first().map(|index| &runs[*index].expansion) else { continue };
+        let Some(series) = lanes.first().map(|index| &runs[*index].memory.expansion) else {
+            continue;
+        };
         let known = tapes.iter().position(|own| own.series.is_like(series));
         let known = known.unwrap_or_else(|| {
             tapes.push(Lanes::new(series));
@@ -194,7 +197,7 @@ fn follow_together<'a>(
 #[derive(Default)]
 pub struct SideBySide {
     tapes: Vec<Lanes>,
-    idle: Vec<RunMemory>,
+    idle: Vec<Box<RunMemory>>,
 }
 
 impl SideBySide {
@@ -210,7 +213,6 @@ impl SideBySide {
             let Solver { system, events, options, expansions, .. } = solver;
             let run = match expansions {
                 Some(Ok(own)) if system.check(times, values, options).is_ok() => {
-                    let own = own.clone();
                     TaylorRun::new(system, times, values, events, options, own, idle).ok()
                 }
                 _ => None,
@@ -231,28 +233,69 @@ impl SideBySide {
     }
 }
 
-/// The memory of a run that has ended, in which another one of the same equations may begin.
+/// The state of a run and its recurrences, and the memory for them, in which another run of the same equations
+/// may begin.
 pub(super) struct RunMemory {
+    /// The signs of the arguments of the roots.
     root_signs: Vec<f64>,
+    /// All recurrences of the equations.
     expansions: Expansions,
+    /// Those for these signs.
     expansion: SystemSeries,
+    /// Those for other signs, which the motion has left.
+    left: Vec<(Vec<f64>, SystemSeries)>,
+    /// The states, then the variables of the roots that act.
     values: Vec<f64>,
+    /// The signs of the event functions after the last step.
     signs: Vec<f64>,
+    /// The crossings of events on the last step.
+    met: Vec<(usize, f64, bool)>,
+    /// The sums of the series of the states and of the variables of the roots at the end of the next
+    /// step.
     at_end: Vec<SeriesSums>,
+    /// The data to take back the last step.
     last: StepUndo,
 }
 
 impl RunMemory {
-    /// Takes the memory of a run of these equations on the same side of their roots; `None` if there is none.
+    /// Takes idle memory of a run of these equations on the same side of their roots, or new one.
+    ///
+    /// # Errors
+    /// There are no series on this side.
     fn take(
-        idle: &mut Vec<Self>,
-        system: &System,
+        idle: &mut Vec<Box<Self>>,
+        (system, events): (&System, &[Event]),
         expansions: &Expansions,
         signs: &[f64],
-    ) -> Option<Self> {
-        let fits = |own: &Self| own.root_signs == signs && own.expansions.is_like(expansions);
-        let mut memory = idle.swap_remove(idle.iter().rposition(fits)?);
-        memory.expansion.begin_anew(&system.numbers).then_some(memory)
+    ) -> Result<Box<Self>, SystemError> {
+        let fits = |own: &Box<Self>| own.root_signs == signs && own.expansions.is_like(expansions);
+        if let Some(found) = idle.iter().rposition(fits) {
+            let mut memory = idle.swap_remove(found);
+            if memory.expansion.begin_anew(&system.numbers) {
+                memory.left.clear();
+                return Ok(memory);
+            }
+        }
+        let no_series = || SystemError::Start(system.state.first().copied().unwrap_or(system.time));
+        Ok(Box::new(Self {
+            expansion: expansions.on_side(system, events, signs).ok_or_else(no_series)?,
+            root_signs: signs.to_vec(),
+            expansions: expansions.clone(),
+            left: vec![],
+            values: vec![],
+            signs: vec![],
+            met: vec![],
+            at_end: vec![],
+            last: StepUndo::default(),
+        }))
+    }
+
+    /// Sets the states, and with them the variables of the roots that act.
+    fn set(&mut self, system: &System, start: f64, states: &[f64]) {
+        let acting = self.expansion.acting.iter().map(|root| &self.expansions.roots[*root]);
+        self.values.clear();
+        self.values.extend_from_slice(states);
+        self.values.extend(acting.map(|root| root.variable_at(system, start, states)));
     }
 }
 
@@ -261,33 +304,19 @@ pub(super) struct TaylorRun<'a> {
     system: &'a System,
     events: &'a [Event],
     options: &'a SystemOptions,
-    expansions: Expansions,
-    /// The signs of the arguments of the roots.
-    root_signs: Vec<f64>,
-    /// The recurrences for these signs.
-    expansion: SystemSeries,
-    /// The recurrences for other signs, which the motion has left.
-    left: Vec<(Vec<f64>, SystemSeries)>,
+    expansions: &'a Expansions,
+    memory: Box<RunMemory>,
     start: f64,
     end: f64,
     duration: f64,
     /// The time since the start.
     time: f64,
-    /// The states, then the variables of the roots that act.
-    values: Vec<f64>,
-    /// The signs of the event functions after the last step.
-    signs: Vec<f64>,
     steps: TaylorSteps,
     occurrences: Vec<EventCrossing>,
     /// Number of consecutive steps that returned to a corner at once.
     stuck: usize,
     /// The corner at which the last step ended, and the speed of its argument there.
     met: Option<(usize, f64)>,
-    /// The sums of the series of the states and of the variables of the roots at the end of the next
-    /// step.
-    at_end: Vec<SeriesSums>,
-    /// The data to take back the last step.
-    last: StepUndo,
     /// Whether the last step may be taken back: not if it ended at a corner or an event.
     is_open: bool,
     /// Number of halvings of the step from the present point.
@@ -343,8 +372,8 @@ impl<'a> TaylorRun<'a> {
         from: &[f64],
         events: &'a [Event],
         options: &'a SystemOptions,
-        expansions: Expansions,
-        idle: &mut Vec<RunMemory>,
+        expansions: &'a Expansions,
+        idle: &mut Vec<Box<RunMemory>>,
     ) -> Result<Self, SystemError> {
         let no_series = || SystemError::Start(system.state.first().copied().unwrap_or(system.time));
         let sign = |root: &Root| match root.argument_at(system, start, from) < 0.0 {
@@ -352,89 +381,58 @@ impl<'a> TaylorRun<'a> {
             false => 1.0,
         };
         let mut root_signs: Vec<f64> = expansions.roots.iter().map(sign).collect();
-        let mut memory = match RunMemory::take(idle, system, &expansions, &root_signs) {
-            Some(memory) => memory,
-            None => RunMemory {
-                expansion: expansions.on_side(system, events, &root_signs).ok_or_else(no_series)?,
-                root_signs: vec![],
-                expansions: expansions.clone(),
-                values: vec![],
-                signs: vec![],
-                at_end: vec![],
-                last: StepUndo::default(),
-            },
-        };
-        let (expansion, values) = (&mut memory.expansion, &mut memory.values);
-        let set = |values: &mut Vec<f64>, expansion: &SystemSeries| {
-            let acting = expansion.acting.iter().map(|root| &expansions.roots[*root]);
-            values.clear();
-            values.extend_from_slice(from);
-            values.extend(acting.map(|root| root.variable_at(system, start, from)));
-        };
-        set(values, expansion);
+        let mut memory = RunMemory::take(idle, (system, events), expansions, &root_signs)?;
+        memory.set(system, start, from);
         // A motion that begins where a root does may begin towards either side.
         for attempt in 0..=root_signs.len() {
+            let RunMemory { expansion, values, .. } = memory.as_mut();
             expansion.begin(start, values);
             let left = expansion.left_root(&root_signs).filter(|_| attempt < root_signs.len());
             let Some(left) = left else { break };
             root_signs[left] *= -1.0;
             *expansion = expansions.on_side(system, events, &root_signs).ok_or_else(no_series)?;
-            set(values, expansion);
+            memory.set(system, start, from);
         }
-        expansion.take_root_sides(&root_signs);
-        let RunMemory { expansion, values, mut signs, at_end, last, .. } = memory;
-        signs.clear();
-        signs.resize(events.len(), 0.0);
+        memory.expansion.take_root_sides(&root_signs);
+        memory.root_signs = root_signs;
+        memory.signs.clear();
+        memory.signs.resize(events.len(), 0.0);
+        let steps = TaylorSteps::new(memory.values.len(), expansions.order(), &expansions.memory);
         Ok(Self {
             system,
             events,
             options,
+            expansions,
+            memory,
             start,
             end,
             duration: end - start,
             time: 0.0,
-            signs,
-            steps: TaylorSteps::new(values.len(), expansions.order(), &expansions.memory),
-            values,
+            steps,
             occurrences: vec![],
             stuck: 0,
             met: None,
-            at_end,
-            last,
             is_open: false,
             halvings: 0,
-            expansions,
-            root_signs,
-            expansion,
-            left: vec![],
         })
     }
 
     /// Returns the path of a run that has ended, and its memory.
-    fn finish(mut self, reason: PathEnd) -> (Path, RunMemory) {
+    fn finish(mut self, reason: PathEnd) -> (Path, Box<RunMemory>) {
         if self.steps.count() == 0 {
             // A run that ended at its start gets one step of length zero.
-            let states = self.values[..self.system.state.len()].to_vec();
+            let states = self.memory.values[..self.system.state.len()].to_vec();
             self.steps = TaylorSteps::at_rest(states);
         }
         let on_side = |signs: &[f64]| self.expansions.on_side(self.system, self.events, signs);
-        self.steps.finish(self.start, self.root_signs.len(), on_side);
+        self.steps.finish(self.start, self.memory.root_signs.len(), on_side);
         let path = Path {
             end: if reason == PathEnd::Reached { self.end } else { self.start + self.time },
             motion: PathRepresentation::Taylor { steps: self.steps, start: self.start },
             reason,
             occurrences: self.occurrences,
         };
-        let memory = RunMemory {
-            root_signs: self.root_signs,
-            expansions: self.expansions,
-            expansion: self.expansion,
-            values: self.values,
-            signs: self.signs,
-            at_end: self.at_end,
-            last: self.last,
-        };
-        (path, memory)
+        (path, self.memory)
     }
 
     /// Sets the expansion at the start of the next step; returns the reason if the run ends there.
@@ -446,7 +444,7 @@ impl<'a> TaylorRun<'a> {
         if !over && self.options.interrupt.is_requested() {
             return Some(PathEnd::Interrupted);
         }
-        self.expansion.expand_about(self.start + self.time, &self.values);
+        self.memory.expansion.expand_about(self.start + self.time, &self.memory.values);
         None
     }
 
@@ -481,8 +479,9 @@ impl<'a> TaylorRun<'a> {
         };
         let reach = step.reach;
         let met = self.met.take();
-        if met.is_some_and(|(corner, speed)| self.expansion.stays_on(corner, speed * reach, reach))
-        {
+        if met.is_some_and(|(corner, speed)| {
+            self.memory.expansion.stays_on(corner, speed * reach, reach)
+        }) {
             return Ok(Prepared::Ended(PathEnd::Sticks));
         }
         Ok(Prepared::Step(step))
@@ -490,14 +489,14 @@ impl<'a> TaylorRun<'a> {
 
     /// Sums the series at the end of the next step on the tape of this run.
     fn sum_alone(&mut self, length: f64) {
-        self.at_end.resize(self.values.len(), SeriesSums::default());
-        self.expansion.tape.sums(&[length], &mut self.at_end);
+        self.memory.at_end.resize(self.memory.values.len(), SeriesSums::default());
+        self.memory.expansion.tape.sums(&[length], &mut self.memory.at_end);
     }
 
     /// Takes the sums of a lane at the end of the next step.
     fn sum_from<const L: usize>(&mut self, lane: usize, sums: &[SeriesSums<L>]) {
-        self.at_end.clear();
-        self.at_end.extend(sums.iter().map(|sums| sums.of_lane(lane)));
+        self.memory.at_end.clear();
+        self.memory.at_end.extend(sums.iter().map(|sums| sums.of_lane(lane)));
     }
 
     /// Checks that all states and events have a series here.
@@ -505,11 +504,11 @@ impl<'a> TaylorRun<'a> {
     /// # Errors
     /// [`SystemError`] with the first state or event without one.
     fn defined(&mut self) -> Result<(), SystemError> {
-        let settled = self.expansion.switch_corners();
+        let settled = self.memory.expansion.switch_corners();
         // Behind the states come the variables of the roots.
         let name = |state: usize| *self.system.state.get(state).unwrap_or(&self.system.time);
         settled.map_err(|state| SystemError::Start(name(state)))?;
-        match self.expansion.undefined_event() {
+        match self.memory.expansion.undefined_event() {
             Some(event) => Err(SystemError::Event(event)),
             None => Ok(()),
         }
@@ -518,7 +517,7 @@ impl<'a> TaylorRun<'a> {
     /// Returns the reason why the run ends here if there is no series.
     fn without_value(&self) -> PathEnd {
         let before = self.steps.last_start().unwrap_or(self.time);
-        without_value(self.values.iter().copied(), [before, self.time])
+        without_value(self.memory.values.iter().copied(), [before, self.time])
     }
 
     /// Returns the next step: the longest within the tolerance, shortened so that it crosses neither
@@ -527,26 +526,30 @@ impl<'a> TaylorRun<'a> {
         let left = self.duration - self.time;
         let next = next_critical(&self.system.critical, now);
         let limit = next.map_or(left, |next| (next - now).min(left));
-        let longest = match self.expansion.acting.is_empty() {
-            true => self.expansion.longest_step.min(limit),
+        let longest = match self.memory.expansion.acting.is_empty() {
+            true => self.memory.expansion.longest_step.min(limit),
             // At rest in contact the series are constant, and the time is proportional to s.
-            false => self.expansion.longest_step.min(2.0 * limit / self.expansion.time_rate()),
+            false => self
+                .memory
+                .expansion
+                .longest_step
+                .min(2.0 * limit / self.memory.expansion.time_rate()),
         };
-        let corner = self.expansion.first_corner(longest);
+        let corner = self.memory.expansion.first_corner(longest);
         // Beyond the end of contact the time would go back.
         let forward = corner.map_or(longest, |(_, place)| place);
-        let within = self.expansion.step_within(limit, forward);
+        let within = self.memory.expansion.step_within(limit, forward);
         let longest = within.unwrap_or(longest);
-        let reach = self.expansion.short_of_narrow(longest) * 0.5_f64.powi(self.halvings);
+        let reach = self.memory.expansion.short_of_narrow(longest) * 0.5_f64.powi(self.halvings);
         let corner = corner.filter(|(_, place)| *place <= reach);
         let until = match within.is_some() && reach == longest && limit == left {
             true => self.duration,
-            false => self.time + self.expansion.elapsed(reach),
+            false => self.time + self.memory.expansion.elapsed(reach),
         };
         // Where a root acts, its variable moves on although the time may not.
-        let moves = match self.expansion.acting.is_empty() {
+        let moves = match self.memory.expansion.acting.is_empty() {
             true => now + reach > now,
-            false => corner.is_some() || self.expansion.elapsed(reach) > 0.0,
+            false => corner.is_some() || self.memory.expansion.elapsed(reach) > 0.0,
         };
         let length = corner.map_or(reach, |(_, place)| place);
         (reach > 0.0 && moves).then_some(NextStep { reach, length, until, corner })
@@ -557,17 +560,18 @@ impl<'a> TaylorRun<'a> {
     fn advance(&mut self, step: &NextStep) -> Option<PathEnd> {
         let &NextStep { reach, mut length, until, mut corner } = step;
         self.remember(length);
-        let range = match within_range(self.values.iter().copied()) {
+        let range = match within_range(self.memory.values.iter().copied()) {
             true => None,
             false => end_of_range(length, |place| {
-                self.expansion.tape.values(place, &mut self.values);
-                within_range(self.values.iter().copied())
+                self.memory.expansion.tape.values(place, &mut self.memory.values);
+                within_range(self.memory.values.iter().copied())
             }),
         };
         if let Some(end) = range {
             (corner, length) = (None, end);
         }
-        let mut met = self.expansion.crossings(&mut self.signs, length);
+        let mut met = std::mem::take(&mut self.memory.met);
+        self.memory.expansion.crossings(&mut self.memory.signs, length, &mut met);
         met.retain(|(event, _, rising)| self.events[*event].counts(*rising));
         let stop = met.iter().position(|found| self.events[found.0].stops);
         let stop = stop.map(|index| {
@@ -576,25 +580,27 @@ impl<'a> TaylorRun<'a> {
             met[index].0
         });
         let (start, time) = (self.start, self.time);
-        self.occurrences.extend(met.into_iter().map(|(event, place, rising)| EventCrossing {
-            event,
-            time: start + (time + self.expansion.elapsed(place)),
-            rising,
-        }));
-        let series = (0..self.system.state.len()).map(|state| self.expansion.state(state));
+        let crossings = met.iter().map(|(event, place, rising)| EventCrossing {
+            event: *event,
+            time: start + (time + self.memory.expansion.elapsed(*place)),
+            rising: *rising,
+        });
+        self.occurrences.extend(crossings);
+        self.memory.met = met;
+        let series = (0..self.system.state.len()).map(|state| self.memory.expansion.state(state));
         let point = ExpansionPoint {
-            root_signs: &self.root_signs,
-            sides: &self.last.sides,
-            values: &self.last.values,
+            root_signs: &self.memory.root_signs,
+            sides: &self.memory.last.sides,
+            values: &self.memory.last.values,
         };
-        self.steps.push([time, length], &point, series, self.expansion.time());
+        self.steps.push([time, length], &point, series, self.memory.expansion.time());
         self.steps.forget_before(self.options.keep_from - start);
         if stop.is_some() || range.is_some() {
-            self.expansion.tape.values(length, &mut self.values);
+            self.memory.expansion.tape.values(length, &mut self.memory.values);
         }
         let whole = corner.is_none() && stop.is_none() && range.is_none();
         self.is_open = whole;
-        self.time = if whole { until } else { time + self.expansion.elapsed(length) };
+        self.time = if whole { until } else { time + self.memory.expansion.elapsed(length) };
         if let Some(event) = stop {
             return Some(PathEnd::Event(event));
         }
@@ -608,49 +614,49 @@ impl<'a> TaylorRun<'a> {
         self.halvings = 0;
         // A motion that leaves a corner and returns at once, over and over, sticks to it.
         const OFTEN: usize = 20;
-        let [gone, whole] = [length, reach].map(|place| self.expansion.elapsed(place));
+        let [gone, whole] = [length, reach].map(|place| self.memory.expansion.elapsed(place));
         let at_once = gone <= 1e-12 * whole + 4.0 * f64::EPSILON * self.time;
         self.stuck = if at_once { self.stuck + 1 } else { 0 };
         if self.stuck > OFTEN {
             return Some(PathEnd::Sticks);
         }
-        if corner < self.root_signs.len() {
+        if corner < self.memory.root_signs.len() {
             return self.pass_root(corner);
         }
-        self.met = self.expansion.speed_at(corner, length).map(|speed| (corner, speed));
-        self.expansion.cross(corner);
+        self.met = self.memory.expansion.speed_at(corner, length).map(|speed| (corner, speed));
+        self.memory.expansion.cross(corner);
         None
     }
 
     /// Takes the states at the end of a step, and keeps those before it.
     fn remember(&mut self, length: f64) {
-        let last = &mut self.last;
+        let last = &mut self.memory.last;
         (last.length, last.occurrences) = (length, self.occurrences.len());
-        std::mem::swap(&mut last.values, &mut self.values);
-        self.values.clear();
-        self.values.extend(self.at_end.iter().map(|sums| sums.value[0]));
-        last.signs.clone_from(&self.signs);
+        std::mem::swap(&mut last.values, &mut self.memory.values);
+        self.memory.values.clear();
+        self.memory.values.extend(self.memory.at_end.iter().map(|sums| sums.value[0]));
+        last.signs.clone_from(&self.memory.signs);
         last.sides.clear();
-        last.sides.extend(self.expansion.tape.corners().map(|(_, side)| side));
-        let states = self.at_end.iter().take(self.system.state.len());
+        last.sides.extend(self.memory.expansion.tape.corners().map(|(_, side)| side));
+        let states = self.memory.at_end.iter().take(self.system.state.len());
         last.changes.clear();
         last.changes.extend(states.map(|sums| [sums.change[0], sums.size[0]]));
     }
 
     /// Goes over to the other side of a root. Returns the reason if the run ends there.
     fn pass_root(&mut self, passed: usize) -> Option<PathEnd> {
-        let before = self.root_signs.clone();
-        self.root_signs[passed] *= -1.0;
-        let known = self.left.iter().position(|(signs, _)| *signs == self.root_signs);
+        let before = self.memory.root_signs.clone();
+        self.memory.root_signs[passed] *= -1.0;
+        let known = self.memory.left.iter().position(|(signs, _)| *signs == self.memory.root_signs);
         let next = match known {
-            Some(known) => Some(self.left.swap_remove(known).1),
-            None => self.expansions.on_side(self.system, self.events, &self.root_signs),
+            Some(known) => Some(self.memory.left.swap_remove(known).1),
+            None => self.expansions.on_side(self.system, self.events, &self.memory.root_signs),
         };
         let Some(mut next) = next else { return Some(PathEnd::Singular) };
-        let (states, variables) = self.values.split_at(self.system.state.len());
+        let (states, variables) = self.memory.values.split_at(self.system.state.len());
         let now = self.start + self.time;
         let variable = |root: &usize| {
-            let before = self.expansion.acting.iter().position(|own| own == root);
+            let before = self.memory.expansion.acting.iter().position(|own| own == root);
             match before {
                 _ if *root == passed => 0.0,
                 Some(place) => variables[place],
@@ -662,9 +668,9 @@ impl<'a> TaylorRun<'a> {
         if next.tape.corners().count() > next.roots {
             next.begin(now, &values);
         }
-        next.take_root_sides(&self.root_signs);
-        self.values = values;
-        self.left.push((before, std::mem::replace(&mut self.expansion, next)));
+        next.take_root_sides(&self.memory.root_signs);
+        self.memory.values = values;
+        self.memory.left.push((before, std::mem::replace(&mut self.memory.expansion, next)));
         None
     }
 
@@ -675,14 +681,14 @@ impl<'a> TaylorRun<'a> {
         const ASTRAY: f64 = 1e-8;
         // The truncated terms are within the tolerance, and their derivatives within the tolerance
         // times the next order.
-        let astray = ASTRAY.max((self.expansion.order + 1) as f64 * self.options.tolerance);
-        let length = self.last.length;
+        let astray = ASTRAY.max((self.memory.expansion.order + 1) as f64 * self.options.tolerance);
+        let length = self.memory.last.length;
         let apart = |(state, [change, size]): (usize, &[f64; 2])| {
-            let apart = (change - self.expansion.rate(state) * length).abs();
+            let apart = (change - self.memory.expansion.rate(state) * length).abs();
             (apart > astray * size).then_some((state, apart / length))
         };
         let missed: Vec<(usize, f64)> =
-            self.last.changes.iter().enumerate().filter_map(apart).collect();
+            self.memory.last.changes.iter().enumerate().filter_map(apart).collect();
         !missed.is_empty() && !self.is_rounding(&missed, now)
     }
 
@@ -693,33 +699,34 @@ impl<'a> TaylorRun<'a> {
     fn is_rounding(&mut self, missed: &[(usize, f64)], now: f64) -> bool {
         /// Number of units in the last place of a state that count as rounding.
         const DIGITS: f64 = 4.0;
-        let here: Vec<f64> = missed.iter().map(|(state, _)| self.expansion.rate(*state)).collect();
+        let here: Vec<f64> =
+            missed.iter().map(|(state, _)| self.memory.expansion.rate(*state)).collect();
         let mut by_rounding = vec![0.0; missed.len()];
-        let mut values = self.values.clone();
+        let mut values = self.memory.values.clone();
         for state in 0..self.system.state.len() {
-            values[state] += DIGITS * f64::EPSILON * self.values[state].abs();
-            let expanded =
-                values[state] != self.values[state] && self.expansion.expand_once(now, &values);
+            values[state] += DIGITS * f64::EPSILON * self.memory.values[state].abs();
+            let expanded = values[state] != self.memory.values[state]
+                && self.memory.expansion.expand_once(now, &values);
             if expanded {
                 for ((sum, here), (missed, _)) in by_rounding.iter_mut().zip(&here).zip(missed) {
-                    *sum += (self.expansion.rate(*missed) - here).abs();
+                    *sum += (self.memory.expansion.rate(*missed) - here).abs();
                 }
             }
-            values[state] = self.values[state];
+            values[state] = self.memory.values[state];
         }
         // The expansion at the unchanged state is restored.
-        let again = self.expansion.expand_once(now, &self.values);
+        let again = self.memory.expansion.expand_once(now, &self.memory.values);
         again && missed.iter().zip(by_rounding).all(|((_, apart), sum)| *apart <= sum)
     }
 
     /// Returns to the start of the last step, from which half of it will be taken.
     fn take_back(&mut self) {
         let Some(time) = self.steps.pop() else { return };
-        let last = &self.last;
+        let last = &self.memory.last;
         self.time = time;
-        self.values.clone_from(&last.values);
-        self.signs.clone_from(&last.signs);
-        self.expansion.set_sides(&last.sides);
+        self.memory.values.clone_from(&last.values);
+        self.memory.signs.clone_from(&last.signs);
+        self.memory.expansion.set_sides(&last.sides);
         self.occurrences.truncate(last.occurrences);
         self.halvings += 1;
     }

@@ -40,9 +40,11 @@ pub(super) struct EventRun<'a> {
     record: WallRecord,
     guards: Vec<GuardState>,
     events: EventRecord,
-    /// Memory for states at some times, and for those at one of them.
+    /// States in some places of the last stretches, and memory for those in one of them.
     samples: Sampled,
     sampled: Vec<f64>,
+    /// Memory for the gap of each wall.
+    gaps: Vec<f64>,
 }
 
 /// The pieces of a motion that has ended, the reason, and the impacts and events on its way.
@@ -94,6 +96,7 @@ impl<'a> EventRun<'a> {
             events: EventRecord::default(),
             samples: Sampled::default(),
             sampled: vec![],
+            gaps: vec![],
         };
         if let Some(events) = &flight.events {
             events.check_start(from, &run.state)?;
@@ -185,17 +188,8 @@ impl<'a> EventRun<'a> {
         let end = stretch.last().map_or(self.from, TrajectorySegment::end);
         let recorded = stretch.last().map_or(0, |piece| piece.recorded);
         let flight = self.flight;
-        self.note_largest(&stretch);
-        let passed = flight.walls.as_ref().is_some_and(|walls| {
-            let passed =
-                |time: f64, state: &[f64]| walls.passed(time, state, &self.largest).is_some();
-            let middle = 0.5 * (self.from + end);
-            let middle = || {
-                let piece = stretch.iter().find(|piece| piece.end() >= middle)?;
-                Some(passed(middle, &piece.states_at(middle)?))
-            };
-            last.as_ref().is_some_and(|last| passed(end, last)) || middle().unwrap_or(false)
-        });
+        self.take_samples(&stretch);
+        let passed = self.has_passed_wall(end, last.as_deref());
         let missed = match (&flight.events, &last) {
             (Some(events), Some(last)) => {
                 events.note_largest(end, last, &mut self.guards);
@@ -243,30 +237,43 @@ impl<'a> EventRun<'a> {
         }
     }
 
-    /// Raises the largest gaps of the walls and sizes of the guards to those on these stretches, which are
-    /// looked at in some places; those at their ends are not among them.
-    fn note_largest(&mut self, stretch: &[TrajectorySegment]) {
+    /// Takes the states in some places of these stretches, those at their ends not among them, and raises the
+    /// largest gaps of the walls and sizes of the guards to those there.
+    fn take_samples(&mut self, stretch: &[TrajectorySegment]) {
         const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
         let Ready { walls, events, states, .. } = self.flight;
+        self.samples.clear();
         if walls.is_none() && events.is_none() {
             return;
         }
         self.samples.columns.resize(states.len(), vec![]);
         for piece in stretch {
             let times = PLACES.map(|share| piece.from + share * (piece.end() - piece.from));
-            self.samples.clear();
             piece.sample(&times, &mut self.samples);
-            for index in 0..self.samples.times.len() {
-                let time = self.samples.times[index];
-                self.samples.read_row(index, &mut self.sampled);
-                if let Some(walls) = walls {
-                    walls.note_largest(time, &self.sampled, &mut self.largest);
-                }
-                if let Some(events) = events {
-                    events.note_largest(time, &self.sampled, &mut self.guards);
-                }
+        }
+        for index in 0..self.samples.times.len() {
+            let time = self.samples.times[index];
+            self.samples.read_row(index, &mut self.sampled);
+            if let Some(walls) = walls {
+                walls.note_largest(time, &self.sampled, &mut self.largest, &mut self.gaps);
+            }
+            if let Some(events) = events {
+                events.note_largest(time, &self.sampled, &mut self.guards);
             }
         }
+    }
+
+    /// Whether the motion is behind a wall in one of the places of its samples, or at the end.
+    fn has_passed_wall(&mut self, end: f64, last: Option<&[f64]>) -> bool {
+        let Some(walls) = &self.flight.walls else { return false };
+        let (largest, gaps) = (&self.largest, &mut self.gaps);
+        if last.is_some_and(|last| walls.passed(end, last, largest, gaps)) {
+            return true;
+        }
+        (0..self.samples.times.len()).any(|index| {
+            self.samples.read_row(index, &mut self.sampled);
+            walls.passed(self.samples.times[index], &self.sampled, largest, gaps)
+        })
     }
 
     /// Goes on to the end.

@@ -55,19 +55,29 @@ impl StateFunctions {
         time: f64,
         state: &[f64],
     ) -> Vec<f64> {
-        const SHORT: usize = 16;
         let mut values = vec![0.0; size];
+        self.write_values(list, time, state, &mut values);
+        values
+    }
+
+    /// Writes the values of a list of functions at a state.
+    pub(super) fn write_values(
+        &self,
+        list: &CompiledList,
+        time: f64,
+        state: &[f64],
+        values: &mut [f64],
+    ) {
+        const SHORT: usize = 16;
         let (state, numbers) = (&state[..self.states], &self.numbers);
         let count = 1 + state.len() + numbers.len();
         if count > SHORT {
-            list.call_once(&[&[time], state, numbers].concat(), &mut values);
-            return values;
+            return list.call_once(&[&[time], state, numbers].concat(), values);
         }
         let mut arguments = [time; SHORT];
         arguments[1..=state.len()].copy_from_slice(state);
         arguments[1 + state.len()..count].copy_from_slice(numbers);
-        list.call_once(&arguments[..count], &mut values);
-        values
+        list.call_once(&arguments[..count], values);
     }
 
     /// The energy of a state; `None` if there is none.

@@ -117,24 +117,25 @@ pub(super) struct CompiledWalls {
 }
 
 /// The values of the functions of a wall at a state.
+#[derive(Clone, Debug, Default)]
 struct AtWall {
     gap: f64,
     rate: f64,
     free: f64,
     jerk: f64,
-    /// n, then d = M^-1 n.
-    vectors: Vec<f64>,
+    /// These four, then n and d = M^-1 n.
+    values: Vec<f64>,
 }
 
 impl AtWall {
     /// n = dg/dq for each coordinate.
     fn normal(&self) -> &[f64] {
-        &self.vectors[..self.vectors.len() / 2]
+        &self.values[4..self.values.len() / 2 + 2]
     }
 
     /// d = M^-1 n for each coordinate.
     fn direction(&self) -> &[f64] {
-        &self.vectors[self.vectors.len() / 2..]
+        &self.values[self.values.len() / 2 + 2..]
     }
 
     /// The largest component of n.
@@ -212,16 +213,27 @@ impl CompiledWalls {
 
     fn at(&self, wall: usize, time: f64, state: &[f64]) -> AtWall {
         let [coordinates, _] = self.counts;
-        let list = &self.functions[wall];
-        let mut vectors = self.evaluation.values(list, 4 + 2 * coordinates, time, state);
-        let [gap, rate, free, jerk] = [vectors[0], vectors[1], vectors[2], vectors[3]];
-        vectors.drain(..4);
-        AtWall { gap, rate, free, jerk, vectors }
+        let mut at = AtWall { values: vec![0.0; 4 + 2 * coordinates], ..AtWall::default() };
+        self.refresh(&mut at, wall, time, state);
+        at
     }
 
     /// The values at all walls at a state.
     fn at_each(&self, time: f64, state: &[f64]) -> Vec<AtWall> {
         (0..self.walls.len()).map(|wall| self.at(wall, time, state)).collect()
+    }
+
+    /// Takes the values at a wall at another state.
+    fn refresh(&self, at: &mut AtWall, wall: usize, time: f64, state: &[f64]) {
+        self.evaluation.write_values(&self.functions[wall], time, state, &mut at.values);
+        [at.gap, at.rate, at.free, at.jerk] = [0, 1, 2, 3].map(|index| at.values[index]);
+    }
+
+    /// Takes the values at all walls at another state.
+    fn refresh_each(&self, walls: &mut [AtWall], time: f64, state: &[f64]) {
+        for (wall, at) in walls.iter_mut().enumerate() {
+            self.refresh(at, wall, time, state);
+        }
     }
 
     /// The size of a gap: that of the positions in it, whose rounding it has, or the largest so far. Where
@@ -240,14 +252,20 @@ impl CompiledWalls {
         largest.max(in_gap(&state[..coordinates])).max(flight)
     }
 
-    /// The first wall behind which a motion is, beyond rounding.
-    pub(super) fn passed(&self, time: f64, state: &[f64], largest: &[f64]) -> Option<usize> {
-        let gaps = self.gaps(time, state);
+    /// Whether a motion is behind a wall, beyond rounding; `gaps` is memory for a number for each.
+    pub(super) fn passed(
+        &self,
+        time: f64,
+        state: &[f64],
+        largest: &[f64],
+        gaps: &mut Vec<f64>,
+    ) -> bool {
+        self.write_gaps(time, state, gaps);
         if gaps.iter().all(|gap| *gap >= 0.0) {
-            return None;
+            return false;
         }
         let size = self.size_of_gaps(&self.at_each(time, state), state, largest);
-        gaps.into_iter().position(|gap| gap < -BEHIND * size)
+        gaps.iter().any(|gap| *gap < -BEHIND * size)
     }
 
     /// The largest size of a gap: one that is closed all the time has none of its own.
@@ -341,15 +359,16 @@ impl CompiledWalls {
                 record.order_matters.get_or_insert(time);
             }
             struck.push(wall);
-            walls = self.at_each(time, state);
+            self.refresh_each(&mut walls, time, state);
         }
         // The state is put onto the walls that were hit, which rounding has left a little off.
         for wall in struck.iter().chain(resting) {
-            self.project(*wall, time, state);
+            self.project(&walls[*wall], state);
+            self.refresh_each(&mut walls, time, state);
         }
         // The force of a wall that was released is zero, up to rounding.
         touched.retain(|wall| event != WallEvent::Released(*wall));
-        let bearing = self.bearing(time, state, &touched, |wall| {
+        let bearing = self.bearing(time, state, &touched, &walls, |wall| {
             chatter.contains_key(&wall) || resting.contains(&wall)
         });
         for wall in &bearing {
@@ -417,9 +436,8 @@ impl CompiledWalls {
     }
 
     /// Moves a state along M^-1 n onto a wall.
-    fn project(&self, wall: usize, time: f64, state: &mut [f64]) {
+    fn project(&self, at: &AtWall, state: &mut [f64]) {
         let [coordinates, _] = self.counts;
-        let at = self.at(wall, time, state);
         let shift = at.gap / at.compliance();
         if shift.is_finite() {
             for (position, direction) in state[..coordinates].iter_mut().zip(at.direction()) {
@@ -435,17 +453,20 @@ impl CompiledWalls {
         time: f64,
         state: &[f64],
         touched: &[usize],
+        walls: &[AtWall],
         at_rest: impl Fn(usize) -> bool,
     ) -> Vec<usize> {
         let [coordinates, states] = self.counts;
         let speed = state[coordinates..states].iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let is_at_rest = |wall: &&usize| {
+            let at = &walls[**wall];
+            let size = at.largest_normal() * speed;
+            at_rest(**wall) && at.rate.abs() <= 1e-9 * size || at.rate.abs() <= AT_REST * size
+        };
         let mut bearing: Vec<(usize, AtWall)> = touched
             .iter()
+            .filter(is_at_rest)
             .map(|wall| (*wall, self.with_sign_of_force(*wall, time, state)))
-            .filter(|(wall, at)| {
-                let size = at.largest_normal() * speed;
-                at_rest(*wall) && at.rate.abs() <= 1e-9 * size || at.rate.abs() <= AT_REST * size
-            })
             .collect();
         bearing.sort_by_key(|(wall, _)| *wall);
         // The wall that would pull most is left, until all press.
@@ -483,16 +504,28 @@ impl CompiledWalls {
         AtWall { free: if sign < 0.0 { -f64::MIN_POSITIVE } else { 0.0 }, ..at }
     }
 
-    /// Raises the largest gap of each wall to those at a state.
-    pub(super) fn note_largest(&self, time: f64, state: &[f64], largest: &mut [f64]) {
-        for (largest, gap) in largest.iter_mut().zip(self.gaps(time, state)) {
-            *largest = largest.max(gap);
+    /// Raises the largest gap of each wall to those at a state; `gaps` is memory for as many numbers.
+    pub(super) fn note_largest(
+        &self,
+        time: f64,
+        state: &[f64],
+        largest: &mut [f64],
+        gaps: &mut Vec<f64>,
+    ) {
+        self.write_gaps(time, state, gaps);
+        for (largest, gap) in largest.iter_mut().zip(gaps) {
+            *largest = largest.max(*gap);
         }
     }
 
     /// The gap of each wall at a state.
     pub(super) fn gaps(&self, time: f64, state: &[f64]) -> Vec<f64> {
         self.evaluation.values(&self.gaps, self.walls.len(), time, state)
+    }
+
+    fn write_gaps(&self, time: f64, state: &[f64], gaps: &mut Vec<f64>) {
+        gaps.resize(self.walls.len(), 0.0);
+        self.evaluation.write_values(&self.gaps, time, state, gaps);
     }
 }
 

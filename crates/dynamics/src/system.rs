@@ -302,6 +302,8 @@ fn end_of_range(length: f64, mut is_within: impl FnMut(f64) -> bool) -> Option<f
 pub struct Path {
     motion: PathRepresentation,
     end: f64,
+    /// The states at the end.
+    last: Vec<f64>,
     reason: PathEnd,
     occurrences: Vec<EventCrossing>,
 }
@@ -327,6 +329,12 @@ impl Path {
     /// The events met, in order.
     pub fn occurrences(&self) -> &[EventCrossing] {
         &self.occurrences
+    }
+
+    /// The states at the end as they were computed there, from which the motion goes on. [`Path::states_at`] is
+    /// at the time of the end, which is rounded.
+    pub fn last_states(&self) -> &[f64] {
+        &self.last
     }
 
     /// The number of steps.

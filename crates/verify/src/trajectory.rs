@@ -720,6 +720,14 @@ impl TrajectorySegment {
         })
     }
 
+    /// The states at the end, from which the motion goes on.
+    fn last_states(&self) -> Option<Vec<f64>> {
+        match self.is_held() {
+            true => self.states_at(self.end()),
+            false => Some(self.path.last_states().to_vec()),
+        }
+    }
+
     /// Adds the states at times in increasing order, those up to the end, to a sample.
     fn sample(&self, times: &[f64], into: &mut Sampled) {
         let Sampled { times: kept, columns } = into;

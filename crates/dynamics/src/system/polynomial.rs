@@ -28,18 +28,27 @@ impl WithSimd for EvaluatePolynomial<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        const TOGETHER: usize = 32;
-        for places in self.places.chunks(TOGETHER) {
-            let (mut at, mut sums) = ([0.0; TOGETHER], [0.0; TOGETHER]);
-            at[..places.len()].copy_from_slice(places);
-            for coefficient in self.series.iter().rev() {
-                for (sum, place) in sums.iter_mut().zip(&at) {
-                    *sum = *sum * place + coefficient;
-                }
-            }
-            self.into.extend_from_slice(&sums[..places.len()]);
+        const FEW: usize = 8;
+        const MANY: usize = 32;
+        let Self { series, places, into } = self;
+        match places.len() <= FEW {
+            true => add_values::<FEW>(series, places, into),
+            false => places.chunks(MANY).for_each(|own| add_values::<MANY>(series, own, into)),
         }
     }
+}
+
+/// Appends the values at no more than `N` places.
+#[inline(always)]
+fn add_values<const N: usize>(series: &[f64], places: &[f64], into: &mut Vec<f64>) {
+    let (mut at, mut sums) = ([0.0; N], [0.0; N]);
+    at[..places.len()].copy_from_slice(places);
+    for coefficient in series.iter().rev() {
+        for (sum, place) in sums.iter_mut().zip(&at) {
+            *sum = *sum * place + coefficient;
+        }
+    }
+    into.extend_from_slice(&sums[..places.len()]);
 }
 
 /// Returns the roots after `from` up to `to` at which the polynomial changes its sign, in order, and
@@ -351,50 +360,74 @@ fn sign_changes(series: &[f64], low: f64, high: f64) -> SignChanges {
         factor *= high - low;
         *coefficient *= factor;
     }
-    Arch::new().dispatch(CountSignChanges { weights, scaled })
+    let mut few = [[0.0; SIDE_BY_SIDE]; KEPT / SIDE_BY_SIDE];
+    let mut many = vec![];
+    let coefficients = match few.get_mut(..weights.len()) {
+        Some(few) => few,
+        None => {
+            many.resize(weights.len(), [0.0; SIDE_BY_SIDE]);
+            many.as_mut_slice()
+        }
+    };
+    Arch::new().dispatch(BernsteinCoefficients { weights, scaled, coefficients });
+    count_sign_changes(&coefficients.as_flattened()[..series.len()])
 }
 
-struct CountSignChanges<'a> {
+/// The sums of the Bernstein coefficients; it is inlined into its caller.
+struct BernsteinCoefficients<'a> {
     weights: &'a BernsteinWeights,
     /// `c_k`.
     scaled: &'a [f64],
+    coefficients: &'a mut [[f64; SIDE_BY_SIDE]],
 }
 
-impl WithSimd for CountSignChanges<'_> {
-    type Output = SignChanges;
+impl WithSimd for BernsteinCoefficients<'_> {
+    type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> SignChanges {
-        let degree = self.scaled.len().saturating_sub(1);
-        let mut changes = SignChanges { count: 0, place: None };
-        // The last coefficient that is not zero, and its index.
-        let (mut before, mut at) = (0.0, 0);
-        for (block, weights) in self.weights.iter().enumerate() {
-            let mut sums = [0.0; SIDE_BY_SIDE];
-            for (weights, coefficient) in weights.iter().zip(self.scaled) {
-                for (sum, weight) in sums.iter_mut().zip(weights) {
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { weights, scaled, coefficients } = self;
+        for (weights, sums) in weights.iter().zip(coefficients) {
+            let mut own = [0.0; SIDE_BY_SIDE];
+            for (weights, coefficient) in weights.iter().zip(scaled) {
+                for (sum, weight) in own.iter_mut().zip(weights) {
                     *sum += weight * coefficient;
                 }
             }
-            for (sum, index) in sums.into_iter().zip(SIDE_BY_SIDE * block..=degree) {
-                if before * sum.signum() < 0.0 && sum != 0.0 {
-                    if changes.count == 0 {
-                        let between = before / (before - sum) * (index - at) as f64;
-                        changes.place = Some((at as f64 + between) / degree as f64);
-                    }
-                    changes.count += 1;
-                }
-                if sum != 0.0 {
-                    (before, at) = (sum, index);
-                }
-                // The last is the value at the end, where a root counts.
-                if index == degree && sum == 0.0 {
-                    changes.count += 1;
-                }
-            }
+            *sums = own;
         }
-        changes
     }
+}
+
+/// Counts the sign changes of Bernstein coefficients, the last of which is the value at the end, where a root
+/// counts.
+fn count_sign_changes(coefficients: &[f64]) -> SignChanges {
+    let mut changes = SignChanges { count: 0, place: None };
+    let Some((last, degree)) = coefficients.last().zip(coefficients.len().checked_sub(1)) else {
+        return changes;
+    };
+    // Most polynomials have no root: all signs are one.
+    let first = coefficients[0];
+    let alike = coefficients.iter().fold(true, |alike, other| alike & (first * other > 0.0));
+    if alike {
+        return changes;
+    }
+    // The last coefficient that is not zero, and its index.
+    let (mut before, mut at) = (0.0, 0);
+    for (index, here) in coefficients.iter().enumerate() {
+        if before * here.signum() < 0.0 && *here != 0.0 {
+            if changes.count == 0 {
+                let between = before / (before - here) * (index - at) as f64;
+                changes.place = Some((at as f64 + between) / degree as f64);
+            }
+            changes.count += 1;
+        }
+        if *here != 0.0 {
+            (before, at) = (*here, index);
+        }
+    }
+    changes.count += usize::from(*last == 0.0);
+    changes
 }
 
 /// Distance from the last root within which the sign is due to rounding.

@@ -201,7 +201,9 @@ pub(super) fn follow(
         }
         (None, reason) => (motion.units.time(last.t), reason),
     };
-    Ok(Path { end, reason, occurrences, motion: super::PathRepresentation::RungeKutta(motion) })
+    let last = motion.states_at(end).unwrap_or_else(|| values.to_vec());
+    let motion = super::PathRepresentation::RungeKutta(motion);
+    Ok(Path { end, last, reason, occurrences, motion })
 }
 
 /// Returns the crossings of the user's events, each of them once.

@@ -427,6 +427,7 @@ impl<'a> TaylorRun<'a> {
         let on_side = |signs: &[f64]| self.expansions.on_side(self.system, self.events, signs);
         self.steps.finish(self.start, self.memory.root_signs.len(), on_side);
         let path = Path {
+            last: self.memory.values[..self.system.state.len()].to_vec(),
             end: if reason == PathEnd::Reached { self.end } else { self.start + self.time },
             motion: PathRepresentation::Taylor { steps: self.steps, start: self.start },
             reason,

@@ -142,7 +142,7 @@ impl TrajectoryRequest {
                 },
             };
             let (end, reason) = (piece.end(), piece.path.reason());
-            last = piece.states_at(end);
+            last = piece.last_states();
             // The events before those of the surfaces.
             let others = piece.recorded + equations.guards.len();
             holds += usize::from(piece.is_held());

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::Symbol;
-use crate::certificate::{PowerLaw, enclose_impact};
+use crate::certificate::{PowerLaw, enclose_impact, enclose_lossy_impact};
 use crate::exact::Rational;
 use crate::export::json;
 use crate::expr::{Expr, parse_expression};
@@ -109,12 +109,11 @@ fn run(arguments: &ImpactArguments) -> Result<Outcome, Failure> {
 fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
     let foreign = [
         ("an equation of its own", setup.swing.is_some()),
-        ("a contact that loses energy", setup.loss.is_some()),
         ("a table of contact laws", setup.every_contact_law),
     ];
     if let Some((what, _)) = foreign.iter().find(|(_, given)| *given) {
         return Err(Failure::Usage(format!(
-            "--certify proves the impact of equation (9), a pendulum against a barrier that loses nothing, not {what}: leave out \
+            "--certify proves the impact of equation (9), a pendulum against a barrier, not {what}: leave out \
              --certify, whose place Runge-Kutta takes"
         )));
     }
@@ -134,13 +133,20 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
         return Err(Failure::because("a number of the impact is not finite".to_owned()));
     };
     let force = power_law(&setup, stiffness)?;
-    let enclosure = enclose_impact(amplitude, barrier, &force)?;
+    let is_lossy = setup.loss.is_some();
     let impact = solve(setup)?;
+    // A restitution gives a damping in doubles, which is taken as the number that is printed.
+    let damping = as_written(impact.damping).filter(|_| is_lossy);
+    let enclosure = match &damping {
+        Some(damping) => enclose_lossy_impact(amplitude, barrier, &force, damping)?,
+        None => enclose_impact(amplitude, barrier, &force)?,
+    };
     let report = ImpactCertificateReport {
         impact: &impact,
         enclosure: &enclosure,
         exact: [amplitude, barrier],
         force: &force,
+        damping: damping.as_ref(),
         tolerance,
     };
     let answer = Answer {

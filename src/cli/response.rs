@@ -439,7 +439,7 @@ fn refused(error: ResponseError) -> Failure {
         ResponseError::WallsWithoutLoss => Some(
             "`lindstedt simulate` with --wall follows one of them; with a drive, damping or a smaller --restitution there are branches".to_owned(),
         ),
-        ResponseError::RestsOnWall => Some(
+        ResponseError::RestsOnWall(_) | ResponseError::RestsOnTwoWalls(..) => Some(
             "`lindstedt simulate` with --wall follows it; a larger coefficient of restitution or a stronger drive keeps it moving"
                 .to_owned(),
         ),

@@ -2,7 +2,7 @@
 
 use super::certificate::{enclosed, percent, rounded_percent};
 use super::{Block, Document};
-use crate::certificate::{ImpactEnclosure, PowerLaw, SizeBounds};
+use crate::certificate::{Enclosure, ImpactEnclosure, PowerLaw, SizeBounds};
 use crate::decimal::{exact_decimal, not_above_typed};
 use crate::exact::Rational;
 use crate::impact::{Impact, PhaseReading};
@@ -19,16 +19,26 @@ pub struct ImpactCertificateReport<'a> {
     pub exact: [&'a Rational; 2],
     /// The force of the barrier.
     pub force: &'a PowerLaw,
+    /// lambda of a contact that loses energy.
+    pub damping: Option<&'a Rational>,
     /// The largest relative error of a passing closed form.
     pub tolerance: f64,
 }
 
 impl ImpactCertificateReport<'_> {
+    /// The proved numbers with their names: five, and two more of a contact that loses energy.
+    pub fn proved(&self) -> Vec<(&'static str, &Enclosure)> {
+        let losses = self.enclosure.losses();
+        self.enclosure.in_order().into_iter().chain(losses.into_iter().flatten()).collect()
+    }
+
     /// The names of the numbers, and the relative errors of Runge-Kutta and of each closed form
     /// from both sides.
     pub fn errors(&self) -> Vec<(&'static str, Vec<SizeBounds>)> {
-        let proved = self.enclosure.in_order();
-        let quantities = self.impact.quantities().into_iter().zip(proved);
+        let proved = self.proved();
+        let losses = self.impact.losses().map(|(judged, _)| judged);
+        let quantities = self.impact.quantities().into_iter().chain(losses.into_iter().flatten());
+        let quantities = quantities.zip(proved);
         let errors = quantities.map(|(quantity, (name, truth))| {
             let values = std::iter::once(&quantity.runge_kutta).chain(&quantity.closed_forms);
             (name, values.map(|value| truth.relative_error(*value)).collect())
@@ -65,8 +75,11 @@ pub fn impact_certificate<'a>(report: &ImpactCertificateReport<'a>) -> Document<
         given[2].0 = "stiffness of the barrier";
         given.push(("exponent of the depth", exactly(&report.force.exponent)));
     }
-    let proved = report.enclosure.in_order();
-    let proved = proved.map(|(name, enclosure)| (name, enclosed(enclosure)));
+    if let Some(damping) = report.damping {
+        given.push(("lambda, its damping: the force is times 1 + lambda d'", exactly(damping)));
+    }
+    let proved = report.proved().into_iter();
+    let proved = proved.map(|(name, enclosure)| (name, enclosed(enclosure))).collect();
     let within = percent(report.tolerance);
     let errors = report.errors();
     let verdict = |(index, (reading, verdict)): (usize, &(PhaseReading, Verdict))| {
@@ -105,8 +118,11 @@ pub fn impact_certificate<'a>(report: &ImpactCertificateReport<'a>) -> Document<
             ],
             vec![
                 Block::Heading("Proved".to_owned()),
-                Block::Facts(proved.into()),
-                Block::Note("times in units of 1/omega, angles in rad".to_owned()),
+                Block::Facts(proved),
+                Block::Note(match report.damping {
+                    None => "times in units of 1/omega, angles in rad".to_owned(),
+                    Some(_) => "times in units of 1/omega, angles in rad; the period ends where the motion turns after the impact".to_owned(),
+                }),
             ],
             vec![
                 Block::Heading(

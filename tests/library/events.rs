@@ -362,6 +362,22 @@ fn a_sweep_has_the_events_of_each_motion() {
     }
 }
 
+/// A motion of a sweep whose first reset has no value ends at its start, and the others go on.
+#[test]
+fn a_reset_without_a_value_at_the_start_ends_its_motion_alone() {
+    let start = [("x", 0.0), ("x'", -2.0)];
+    let all = course("x'' + 9.81 = 0", &["x < 0: x' = -sqrt(a)*x'"], "", &start, 0.3);
+    let motions = sweep(&all, &["a".into()], &[vec![-1.0], vec![1.0], vec![0.25]], || ());
+    let motions = motions.expect("motions");
+    let ends: Vec<_> = motions.iter().map(|motion| (motion.reason, motion.end)).collect();
+    let reached = (PathEnd::Reached, 0.3);
+    assert_eq!(ends, [(PathEnd::NoReset, 0.0), reached, reached]);
+    assert_eq!((motions[0].state.as_slice(), motions[0].events), ([0.0, -2.0].as_slice(), 0));
+    assert_eq!(motions[0].extremes, [[0.0, 0.0]]);
+    // The flight after the kick: x = 2 t - g t^2/2.
+    assert!(is_near(motions[1].state[0], 0.6 - 0.5 * 9.81 * 0.09, 1e-12));
+}
+
 /// A block on a belt of the speed v, on a spring: it sticks until the spring pulls with r mu, and slips back about mu with the amplitude
 /// `sqrt(a^2 + v^2)`, a = (r - 1) mu, for `2 pi - 2 atan(a/v)`; then it is carried for `2 a/v`.
 #[test]

@@ -1,9 +1,11 @@
 //! Impacts in proved numbers, held against elliptic integrals of another crate, quadrature in other
 //! variables, Runge-Kutta, and exact relations.
 
-use lindstedt::certificate::{Enclosure, ImpactEnclosure, NotEnclosed, PowerLaw, enclose_impact};
+use lindstedt::certificate::{
+    Enclosure, ImpactEnclosure, NotEnclosed, PowerLaw, enclose_impact, enclose_lossy_impact,
+};
 use lindstedt::exact::{Rational, from_f64, to_f64};
-use lindstedt::impact::{Setup, solve};
+use lindstedt::impact::{ContactLoss, Setup, solve};
 use num_traits::Signed as _;
 use proptest::prelude::*;
 
@@ -214,4 +216,67 @@ fn what_is_no_impact_is_refused() {
             );
         }
     }
+}
+
+/// A contact without damping is proved twice, by the integrals of its energy and by the integration of its motion:
+/// both intervals hold the same number, for every power of the depth.
+#[test]
+fn without_damping_the_integration_proves_what_the_energy_does() {
+    for (above, below) in [(1, 2), (1, 1), (3, 2), (4, 1)] {
+        let law = PowerLaw { stiffness: fraction(1_000_000, 1), exponent: fraction(above, below) };
+        let (amplitude, barrier, none) = (fraction(3, 2), fraction(-323, 1000), fraction(0, 1));
+        let by_energy = enclose_impact(&amplitude, &barrier, &law).expect("a proof");
+        let by_motion = enclose_lossy_impact(&amplitude, &barrier, &law, &none).expect("a proof");
+        for ((name, one), (_, other)) in by_energy.in_order().into_iter().zip(by_motion.in_order())
+        {
+            let apart = to_f64(&(&one.middle - &other.middle).abs());
+            assert!(apart <= one.radius.value() + other.radius.value(), "{name}: {apart}");
+            assert!(other.radius.value() < 1e-28 * to_f64(&other.middle), "{name}: {other:?}");
+        }
+        let [(_, restitution), (_, exit)] = by_motion.losses().expect("a loss");
+        assert!(
+            agrees(restitution, 1.0, 1e-15) && agrees(exit, to_f64(&by_motion.speed.middle), 1e-15)
+        );
+    }
+}
+
+/// The harder a barrier of Hunt and Crossley, the less the swing acts during the contact, whose restitution e then
+/// obeys `G(-lambda e v) = G(lambda v)` with `G(z) = z - ln(1 + z)`; Runge-Kutta agrees at every hardness.
+#[test]
+fn a_contact_that_loses_energy_is_proved() {
+    let damping = 0.5;
+    let errors = [1e5, 1e7, 1e9].map(|stiffness: f64| {
+        let law = PowerLaw::hertz(exact(stiffness));
+        let impact =
+            enclose_lossy_impact(&fraction(3, 2), &fraction(323, 1000), &law, &exact(damping))
+                .expect("a proof");
+        let setup =
+            Setup { stiffness, loss: Some(ContactLoss::Damping(damping)), ..Setup::default() };
+        let solved = solve(setup).expect("an impact");
+        for (quantity, (name, truth)) in solved.quantities().into_iter().zip(impact.in_order()) {
+            assert!(agrees(truth, quantity.runge_kutta, 1e-9), "{name} at {stiffness}: {truth:?}");
+        }
+        let (judged, _) = solved.losses().expect("a loss");
+        for (quantity, (name, truth)) in judged.iter().zip(impact.losses().expect("a loss")) {
+            assert!(agrees(truth, quantity.runge_kutta, 1e-9), "{name} at {stiffness}: {truth:?}");
+            assert!(truth.radius.value() < 1e-28, "{name} at {stiffness}: {truth:?}");
+        }
+        let [(_, restitution), _] = impact.losses().expect("a loss");
+        let scaled = damping * to_f64(&impact.speed.middle);
+        let function = |z: f64| z - z.ln_1p();
+        let lost = function(-scaled * to_f64(&restitution.middle)) / function(scaled) - 1.0;
+        lost.abs()
+    });
+    // The part of the swing falls as the depth does, as gamma^(-2/5): by 6.3 each time.
+    assert!(
+        errors.windows(2).all(|pair| (0.14..0.18).contains(&(pair[1] / pair[0]))),
+        "{errors:?}"
+    );
+    let negative = enclose_lossy_impact(
+        &fraction(3, 2),
+        &fraction(323, 1000),
+        &PowerLaw::hertz(fraction(1_000_000, 1)),
+        &fraction(-1, 2),
+    );
+    assert_eq!(negative.expect_err("a gain"), NotEnclosed::Damping);
 }

@@ -166,6 +166,21 @@ fn a_start_on_a_table_is_a_rest_to_rounding() {
     }
 }
 
+/// A start a little behind a wall, as slow off it that it never gets before it, is one on the wall: the motion does not
+/// fall through, nor is one from nearby said to.
+#[test]
+fn a_start_a_little_behind_a_wall_is_one_on_it() {
+    let table = course("x'' + g = 0", &[("x > Z*sin(w*t)", "1/2")], "g=1 Z=0.4 w=2");
+    for speed in [0.8, 0.8 * (1.0 + 1e-12)] {
+        let motion = begun(table.clone(), &[("x", -1e-18), ("x'", speed)], 2.0).follow().unwrap();
+        assert_eq!(motion.reason(), PathEnd::Reached, "{speed}");
+        // It is carried until the table falls faster: sin(2 t) = 1/1.6.
+        let release = 0.5 * 0.625_f64.asin();
+        assert!((motion.walls.rests[0].until - release).abs() < 1e-9, "{:?}", motion.walls.rests);
+        assert_eq!(motion.known_until(), None);
+    }
+}
+
 /// A ball at rest on a table `Z sin(w t)` is carried until the table falls faster than it does:
 /// `sin(w t) = g/(Z w^2)`; then it flies.
 #[test]

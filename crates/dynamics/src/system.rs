@@ -316,6 +316,13 @@ enum PathRepresentation {
 }
 
 impl Path {
+    /// A path that ends at the time at which it begins, in these states.
+    pub fn at_instant(time: f64, states: Vec<f64>, reason: PathEnd) -> Self {
+        let steps = TaylorSteps::at_rest(states.clone());
+        let motion = PathRepresentation::Taylor { steps, start: time };
+        Self { motion, end: time, last: states, reason, occurrences: vec![] }
+    }
+
     /// The time at which the path ends.
     pub fn end(&self) -> f64 {
         self.end

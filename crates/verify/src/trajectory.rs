@@ -433,7 +433,15 @@ impl TrajectoryRequest {
             .zip(&all)
             .map(|(course, ready)| {
                 let (ready, start) = ready.as_ref().map_err(Clone::clone)?;
-                EventRun::new(course, ready, (0.0, start.clone()), Integrator::Taylor)
+                let (start, integrator) = ((0.0, start.clone()), Integrator::Taylor);
+                match EventRun::new(course, ready, start.clone(), integrator) {
+                    // This motion ends, and the others go on.
+                    Err(error) if error.is_of_reset() => {
+                        let reason = PathEnd::NoReset;
+                        Ok(EventRun::ended_at_start(course, ready, start, integrator, reason))
+                    }
+                    run => run,
+                }
             })
             .collect();
         // Each round goes on to the next impact of every motion.

@@ -14,8 +14,7 @@ use crate::impact::PhaseReading;
 use crate::report::{ImpactCertificateReport, known_digits};
 use crate::verify::Verdict;
 
-/// The numbers of an impact between a pendulum and a barrier of a power law that loses nothing, each
-/// enclosed by a proof. Times in units of 1/omega, angles in radians.
+/// The numbers of an impact between a pendulum and a barrier of a power law, each enclosed by a proof. Times in units of 1/omega, angles in radians.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 pub struct ImpactCertificateDocument {
@@ -31,6 +30,9 @@ pub struct ImpactCertificateDocument {
     pub stiffness: Constant,
     /// The exponent of the depth, 3/2 of Hertz's law.
     pub exponent: Constant,
+    /// The damping of a contact that loses energy, whose force is `stiffness * depth^exponent * (1 + damping * depth')`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub damping: Option<Constant>,
     /// The enclosed numbers.
     pub proved: OfPhases<EnclosedNumber>,
     /// The size of the relative error up to which a verdict is `pass`.
@@ -41,7 +43,7 @@ pub struct ImpactCertificateDocument {
     pub closed_forms: Vec<ProvedClosedForm>,
 }
 
-/// The five numbers of an impact, or their errors.
+/// The numbers of an impact, or their errors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "{T}OfPhases"))]
 pub struct OfPhases<T> {
@@ -53,13 +55,22 @@ pub struct OfPhases<T> {
     pub penetration: T,
     /// The time from touch to release.
     pub duration: T,
-    /// The time from release to release.
+    /// The time from release to release; of a contact that loses energy until the motion turns after the impact.
     pub period: T,
+    /// The speed after the contact over that before; left out where the contact loses nothing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub restitution: Option<T>,
+    /// The speed after the contact; left out where the contact loses nothing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_out: Option<T>,
 }
 
-impl<T> From<[T; 5]> for OfPhases<T> {
-    fn from([time_to_contact, speed, penetration, duration, period]: [T; 5]) -> Self {
-        Self { time_to_contact, speed, penetration, duration, period }
+impl<T> OfPhases<T> {
+    /// The numbers of each row in the order of a report, the last two of which may be missing.
+    fn of_rows(row: impl Fn(usize) -> T, count: usize) -> Self {
+        let [time_to_contact, speed, penetration, duration, period] = std::array::from_fn(&row);
+        let [restitution, speed_out] = [5, 6].map(|index| (index < count).then(|| row(index)));
+        Self { time_to_contact, speed, penetration, duration, period, restitution, speed_out }
     }
 }
 
@@ -110,24 +121,24 @@ pub fn impact_certificate(report: &ImpactCertificateReport) -> ImpactCertificate
         EnclosedNumber { middle, radius }
     };
     let errors = report.errors();
-    let column = |index: usize| -> [ErrorBounds; 5] {
+    let proved = report.proved();
+    let bounds = |row: usize, index: usize| {
         let unknown = SizeBounds { lower: 0.0, upper: f64::INFINITY };
-        std::array::from_fn(|row| {
-            let range = errors.get(row).and_then(|(_, ranges)| ranges.get(index));
-            let SizeBounds { lower, upper } = range.copied().unwrap_or(unknown);
-            ErrorBounds { lower, upper: finite(Some(upper)) }
-        })
+        let range = errors.get(row).and_then(|(_, ranges)| ranges.get(index));
+        let SizeBounds { lower, upper } = range.copied().unwrap_or(unknown);
+        ErrorBounds { lower, upper: finite(Some(upper)) }
     };
+    let column = |index: usize| OfPhases::of_rows(|row| bounds(row, index), proved.len());
     let most = not_above_typed(report.tolerance);
     let closed_form = |(index, (reading, verdict)): (usize, (PhaseReading, Verdict))| {
         // The first column is that of Runge-Kutta.
-        let own = column(index + 1);
-        let is_within = |bounds: &ErrorBounds| bounds.upper.is_some_and(|upper| upper <= most);
-        let beyond = errors.iter().zip(&own).filter(|(_, bounds)| !is_within(bounds));
+        let is_within =
+            |row: usize| bounds(row, index + 1).upper.is_some_and(|upper| upper <= most);
+        let beyond = errors.iter().enumerate().filter(|(row, _)| !is_within(*row));
         ProvedClosedForm {
             name: reading.name().to_owned(),
-            beyond: beyond.map(|((name, _), _)| name.replace(' ', "_")).collect(),
-            errors: OfPhases::from(own),
+            beyond: beyond.map(|(_, (name, _))| name.replace(' ', "_")).collect(),
+            errors: column(index + 1),
             verdict: verdict.name().to_owned(),
         }
     };
@@ -138,9 +149,10 @@ pub fn impact_certificate(report: &ImpactCertificateReport) -> ImpactCertificate
         barrier,
         stiffness: constant(&report.force.stiffness),
         exponent: constant(&report.force.exponent),
-        proved: OfPhases::from(report.enclosure.in_order().map(|(_, number)| enclosed(number))),
+        damping: report.damping.map(constant),
+        proved: OfPhases::of_rows(|row| enclosed(proved[row].1), proved.len()),
         tolerance: report.tolerance,
-        runge_kutta: OfPhases::from(column(0)),
+        runge_kutta: column(0),
         closed_forms: report.verdicts().into_iter().enumerate().map(closed_form).collect(),
     }
 }

@@ -397,7 +397,7 @@ impl<'a> TaylorRun<'a> {
         memory.root_signs = root_signs;
         memory.signs.clear();
         memory.signs.resize(events.len(), 0.0);
-        let steps = TaylorSteps::new(memory.values.len(), expansions.order(), &expansions.memory);
+        let steps = TaylorSteps::new(from.len(), expansions.order(), &expansions.memory);
         Ok(Self {
             system,
             events,

@@ -51,7 +51,9 @@ pub use damped::{
     check_damped,
 };
 pub use formula::{Enclosure, Errors, JudgedFormula, LettersOfLaw, SizeBounds};
-pub use impact::{ImpactEnclosure, NotEnclosed, PowerLaw, enclose_impact};
+pub use impact::{
+    ImpactEnclosure, LossEnclosure, NotEnclosed, PowerLaw, enclose_impact, enclose_lossy_impact,
+};
 pub use law_on_range::{
     HuntCrossleyForce, LawCertificate, LawError, LawNotProved, LawQuantity, ModeBranch,
     MotionsOfLaw, StartOfLaw, TrueFrequency, check_law, restitution,

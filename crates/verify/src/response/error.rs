@@ -154,12 +154,12 @@ pub enum ResponseError {
         "no motion was found, because the forces that hold it on `{0} = 0` and on other jumps at once are not determined"
     )]
     UndeterminedFriction(String),
-    /// No motion could be followed over a period because it rests on two walls at once, or on one where forces
-    /// jump.
-    #[error(
-        "no motion was found that does not rest on two walls at once, or on a wall while a force jumps"
-    )]
-    RestsOnWall,
+    /// No motion could be followed over a period because it rests on a wall, given by its gap, where forces jump.
+    #[error("no motion was found that does not rest on the wall `{0} = 0` while a force jumps")]
+    RestsOnWall(String),
+    /// No motion could be followed over a period because it rests on two walls at once, given by their gaps.
+    #[error("no motion was found that does not rest on two walls at once, `{0} = 0` and `{1} = 0`")]
+    RestsOnTwoWalls(String, String),
     /// No motion could be followed over a period because events accumulate, or take place at once.
     #[error(
         "no motion was found whose events are apart: within a period they accumulate, or two take place at once"

@@ -63,41 +63,20 @@ impl<'a> EventRun<'a> {
     pub(super) fn new(
         course: &'a TrajectoryRequest,
         flight: &'a Ready,
-        (from, mut state): (f64, Vec<f64>),
+        (from, state): (f64, Vec<f64>),
         integrator: Integrator,
     ) -> Result<Self, TrajectoryError> {
-        state.resize(flight.states.len(), 0.0);
-        let mut record = WallRecord::default();
-        let (mut resting, mut largest) = (vec![], vec![]);
+        let mut run = Self::in_flight(course, flight, (from, state), integrator);
         if let Some(walls) = &flight.walls {
-            walls.check_start(from, &state)?;
-            resting = walls.settle(from, &mut state, WallEvent::Start, &[], &[], &mut record);
-            largest = walls.gaps(from, &state);
+            let (state, record) = (&mut run.state, &mut run.record);
+            walls.check_start(from, state)?;
+            run.resting = walls.settle(from, state, WallEvent::Start, &[], &[], record);
+            run.largest = walls.gaps(from, state);
             // The account begins behind an impact at the start.
             if let Some(work) = walls.work {
                 state[work] = 0.0;
             }
         }
-        let mut run = Self {
-            course,
-            flight,
-            integrator,
-            rest: BTreeMap::new(),
-            from,
-            state,
-            resting,
-            largest,
-            idle: 0,
-            steps: 0,
-            reason: None,
-            pieces: vec![],
-            record,
-            guards: flight.events.as_ref().map_or(vec![], CompiledEvents::guards),
-            events: EventRecord::default(),
-            samples: Sampled::default(),
-            sampled: vec![],
-            gaps: vec![],
-        };
         if let Some(events) = &flight.events {
             events.check_start(from, &run.state)?;
             events.note_largest(from, &run.state, &mut run.guards);
@@ -109,6 +88,51 @@ impl<'a> EventRun<'a> {
             }
         }
         Ok(run)
+    }
+
+    /// A motion that ends where it begins, for this reason.
+    pub(super) fn ended_at_start(
+        course: &'a TrajectoryRequest,
+        flight: &'a Ready,
+        (from, state): (f64, Vec<f64>),
+        integrator: Integrator,
+        reason: PathEnd,
+    ) -> Self {
+        let mut run = Self::in_flight(course, flight, (from, state), integrator);
+        let path = Path::at_instant(from, run.state.clone(), reason);
+        run.pieces.push(TrajectorySegment { from, path, layout: None, recorded: 0 });
+        run.end(reason);
+        run
+    }
+
+    /// A motion in flight, before any impact or event.
+    fn in_flight(
+        course: &'a TrajectoryRequest,
+        flight: &'a Ready,
+        (from, mut state): (f64, Vec<f64>),
+        integrator: Integrator,
+    ) -> Self {
+        state.resize(flight.states.len(), 0.0);
+        Self {
+            course,
+            flight,
+            integrator,
+            rest: BTreeMap::new(),
+            from,
+            state,
+            resting: vec![],
+            largest: vec![],
+            idle: 0,
+            steps: 0,
+            reason: None,
+            pieces: vec![],
+            record: WallRecord::default(),
+            guards: flight.events.as_ref().map_or(vec![], CompiledEvents::guards),
+            events: EventRecord::default(),
+            samples: Sampled::default(),
+            sampled: vec![],
+            gaps: vec![],
+        }
     }
 
     /// Carries out the events at this instant and the impacts that they cause, and sets what is watched from

@@ -117,7 +117,7 @@ impl TrajectoryRequest {
         integrator: Integrator,
     ) -> Result<(Vec<TrajectorySegment>, PathEnd, Option<Vec<f64>>), TrajectoryError> {
         let options = self.options(integrator);
-        let (mut pieces, mut regimes) = (Vec::new(), Regimes::new());
+        let (mut pieces, mut regimes) = (Vec::with_capacity(1), Regimes::new());
         let (mut first, mut from, mut state) = (first, from, state);
         if equations.static_friction > 1.0 {
             let found = surfaces(equations, from, &state)?;

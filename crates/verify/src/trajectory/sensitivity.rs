@@ -172,6 +172,10 @@ impl Trajectory {
             *value += DISPLACEMENT * if *value == 0.0 { size } else { *value };
         }
         let displaced = displaced.follow_by(self.integrator).ok()?;
+        // Of a start that is not followed nothing is known.
+        if displaced.reason == PathEnd::PassesWall {
+            return None;
+        }
         let lost = DISPLACEMENT * SIX_DIGITS / self.course.tolerance.max(ROUNDING);
         let end = self.end().min(displaced.end());
         let sizes = sizes(ACCOUNTS);

@@ -366,6 +366,14 @@ impl CompiledWalls {
             self.project(&walls[*wall], state);
             self.refresh_each(&mut walls, time, state);
         }
+        // A start a little behind a wall is put onto it: a gap that opens from less than nothing may fall again
+        // without having passed through zero.
+        for wall in touched.iter().filter(|_| event == WallEvent::Start) {
+            if walls[*wall].gap < 0.0 {
+                self.project(&walls[*wall], state);
+                self.refresh_each(&mut walls, time, state);
+            }
+        }
         // The force of a wall that was released is zero, up to rounding.
         touched.retain(|wall| event != WallEvent::Released(*wall));
         let bearing = self.bearing(time, state, &touched, &walls, |wall| {

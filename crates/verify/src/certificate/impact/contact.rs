@@ -50,11 +50,11 @@ pub(super) struct PowerLawContact {
     pub(super) waves: [Ball; 2],
 }
 
-fn product(left: &Ball, right: &Ball) -> Ball {
+pub(super) fn product(left: &Ball, right: &Ball) -> Ball {
     WORKING.product(left, right)
 }
 
-fn sum(left: &Ball, right: &Ball) -> Ball {
+pub(super) fn sum(left: &Ball, right: &Ball) -> Ball {
     WORKING.sum(left, right)
 }
 

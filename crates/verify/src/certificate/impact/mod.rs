@@ -18,10 +18,12 @@
 
 mod contact;
 mod elliptic;
+mod lossy_contact;
 
 use num_traits::{Signed as _, ToPrimitive as _, Zero as _};
 
 use self::contact::{PowerLawContact, is_positive, position_and_waves, sine_and_cosine};
+use self::lossy_contact::LossyContact;
 use super::Enclosure;
 use super::fourier_series::WORKING;
 use crate::exact::Rational;
@@ -43,6 +45,18 @@ pub struct ImpactEnclosure {
     pub duration: Enclosure,
     /// Period from the release to the return.
     pub period: Enclosure,
+    /// The restitution and the speed at the end of a contact that loses energy.
+    pub loss: Option<LossEnclosure>,
+}
+
+/// The proved enclosures of what a contact leaves of the speed.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct LossEnclosure {
+    /// The speed after the contact over that before.
+    pub restitution: Enclosure,
+    /// The speed after the contact.
+    pub exit_speed: Enclosure,
 }
 
 impl ImpactEnclosure {
@@ -55,6 +69,12 @@ impl ImpactEnclosure {
             ("duration", &self.duration),
             ("period", &self.period),
         ]
+    }
+
+    /// The two numbers of the loss with their names, in the order of a report; `None` without loss.
+    pub fn losses(&self) -> Option<[(&'static str, &Enclosure); 2]> {
+        let LossEnclosure { restitution, exit_speed } = self.loss.as_ref()?;
+        Some([("restitution", restitution), ("speed out", exit_speed)])
     }
 }
 
@@ -124,6 +144,9 @@ pub enum NotEnclosed {
     /// The barrier is out of reach, or too far out.
     #[error("the barrier must be within reach and below the horizontal: -A < xc < A, |xc| < pi/2")]
     Barrier,
+    /// The contact would gain energy.
+    #[error("the damping lambda of the contact must not be negative")]
+    Damping,
     /// There is no barrier.
     #[error("the stiffness gamma must be positive")]
     Stiffness,
@@ -162,27 +185,8 @@ pub fn enclose_impact(
     barrier: &Rational,
     force: &PowerLaw,
 ) -> Result<ImpactEnclosure, NotEnclosed> {
-    if !force.stiffness.is_positive() {
-        return Err(NotEnclosed::Stiffness);
-    }
-    let power = force.power().ok_or(NotEnclosed::Exponent)?;
-    let (pi, release) = (WORKING.pi(), WORKING.fraction(amplitude));
-    if !amplitude.is_positive() || !is_positive(&WORKING.difference(&pi, &release)) {
-        return Err(NotEnclosed::Release);
-    }
-    let horizontal =
-        is_positive(&WORKING.difference(
-            &pi,
-            &WORKING.fraction(&(barrier.abs() * Rational::from_integer(2.into()))),
-        ));
-    if barrier.abs() >= *amplitude || !horizontal {
-        return Err(NotEnclosed::Barrier);
-    }
-    let (place, waves) = position_and_waves(barrier).ok_or(NotEnclosed::Digits)?;
-    let [_, cosine] = sine_and_cosine(&release).ok_or(NotEnclosed::Digits)?;
-    let speed_squared = WORKING.scaled(&WORKING.difference(&waves[1], &cosine), 2);
-    let speed = WORKING.root(&speed_squared, 2).ok_or(NotEnclosed::Digits)?;
-    let time_to_contact = flight(amplitude, barrier).ok_or(NotEnclosed::Digits)?;
+    let approach = Approach::new(amplitude, barrier, force)?;
+    let Approach { place, waves, speed_squared, speed, time, power } = approach;
     let contact = PowerLawContact {
         barrier: place,
         stiffness: WORKING.fraction(&force.stiffness),
@@ -192,21 +196,126 @@ pub fn enclose_impact(
     };
     let qm = contact.root_of_depth()?;
     let duration = contact.duration(&qm)?;
-    let period = WORKING.sum(&WORKING.scaled(&time_to_contact, 2), &duration);
+    let period = WORKING.sum(&WORKING.scaled(&time, 2), &duration);
     Ok(ImpactEnclosure {
-        time_to_contact: Enclosure::from_ball(&time_to_contact),
+        time_to_contact: Enclosure::from_ball(&time),
         speed: Enclosure::from_ball(&speed),
         penetration: Enclosure::from_ball(&WORKING.product(&qm, &qm)),
         duration: Enclosure::from_ball(&duration),
         period: Enclosure::from_ball(&period),
+        loss: None,
     })
 }
 
-/// The time from rest at `-amplitude` to `place`.
-fn flight(amplitude: &Rational, place: &Rational) -> Option<Ball> {
-    let half = Rational::new(1.into(), 2.into());
-    let waves = |angle: &Rational| sine_and_cosine(&WORKING.fraction(&(angle * &half)));
-    let ([modulus, cosine], [sine, cosine_there]) = (waves(amplitude)?, waves(place)?);
+/// Encloses the impact of a pendulum that is released from rest at `-amplitude` towards a barrier at `barrier`, on
+/// its right, which loses energy by the law of Hunt and Crossley: its force is that of the power law times
+/// `1 + damping d'`. The period ends where the motion turns after the impact.
+///
+/// ```
+/// # use lindstedt_verify as lindstedt;
+/// use lindstedt::certificate::{PowerLaw, enclose_lossy_impact};
+/// use lindstedt::exact::Rational;
+///
+/// let fraction = |above: i64, below: i64| Rational::new(above.into(), below.into());
+/// let barrier = PowerLaw::hertz(fraction(1_000_000, 1));
+/// let impact = enclose_lossy_impact(&fraction(3, 2), &fraction(323, 1000), &barrier, &fraction(1, 2))?;
+/// assert!(impact.loss.is_some_and(|loss| loss.restitution.radius.value() < 1e-30));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`NotEnclosed`] if there is no such impact, or its numbers are not proved.
+pub fn enclose_lossy_impact(
+    amplitude: &Rational,
+    barrier: &Rational,
+    force: &PowerLaw,
+    damping: &Rational,
+) -> Result<ImpactEnclosure, NotEnclosed> {
+    if damping.is_negative() {
+        return Err(NotEnclosed::Damping);
+    }
+    let approach = Approach::new(amplitude, barrier, force)?;
+    let Approach { place, waves, speed, time, power, .. } = approach;
+    let contact = LossyContact {
+        barrier: place,
+        stiffness: WORKING.fraction(&force.stiffness),
+        damping: WORKING.fraction(damping),
+        power,
+        speed: speed.clone(),
+    };
+    let ends = contact.follow()?;
+    // The motion turns where cos A = cos xc - v^2/2.
+    let left = WORKING.divided(&WORKING.product(&ends.exit_speed, &ends.exit_speed), 2);
+    let cosine = WORKING.difference(&waves[1], &left);
+    let half = |square: Ball| WORKING.root(&WORKING.divided(&square, 2), 2);
+    let one = WORKING.integer(1);
+    let waves =
+        || Some([half(WORKING.difference(&one, &cosine))?, half(WORKING.sum(&one, &cosine))?]);
+    let back = || flight(waves()?, barrier);
+    let back = back().ok_or(NotEnclosed::Digits)?;
+    let period = WORKING.sum(&WORKING.sum(&time, &ends.duration), &back);
+    let restitution = WORKING.quotient(&ends.exit_speed, &speed).ok_or(NotEnclosed::Digits)?;
+    let depth = WORKING.product(&ends.root_of_depth, &ends.root_of_depth);
+    Ok(ImpactEnclosure {
+        time_to_contact: Enclosure::from_ball(&time),
+        speed: Enclosure::from_ball(&speed),
+        penetration: Enclosure::from_ball(&depth),
+        duration: Enclosure::from_ball(&ends.duration),
+        period: Enclosure::from_ball(&period),
+        loss: Some(LossEnclosure {
+            restitution: Enclosure::from_ball(&restitution),
+            exit_speed: Enclosure::from_ball(&ends.exit_speed),
+        }),
+    })
+}
+
+/// The swing from the release to the touch.
+struct Approach {
+    /// Place of the barrier.
+    place: Ball,
+    /// Sine and cosine of the place.
+    waves: [Ball; 2],
+    speed_squared: Ball,
+    speed: Ball,
+    /// The time to the touch.
+    time: Ball,
+    /// p of the barrier.
+    power: u32,
+}
+
+impl Approach {
+    fn new(
+        amplitude: &Rational,
+        barrier: &Rational,
+        force: &PowerLaw,
+    ) -> Result<Self, NotEnclosed> {
+        if !force.stiffness.is_positive() {
+            return Err(NotEnclosed::Stiffness);
+        }
+        let power = force.power().ok_or(NotEnclosed::Exponent)?;
+        let (pi, release) = (WORKING.pi(), WORKING.fraction(amplitude));
+        if !amplitude.is_positive() || !is_positive(&WORKING.difference(&pi, &release)) {
+            return Err(NotEnclosed::Release);
+        }
+        let twice = WORKING.fraction(&(barrier.abs() * Rational::from_integer(2.into())));
+        let horizontal = is_positive(&WORKING.difference(&pi, &twice));
+        if barrier.abs() >= *amplitude || !horizontal {
+            return Err(NotEnclosed::Barrier);
+        }
+        let (place, waves) = position_and_waves(barrier).ok_or(NotEnclosed::Digits)?;
+        let [_, cosine] = sine_and_cosine(&release).ok_or(NotEnclosed::Digits)?;
+        let speed_squared = WORKING.scaled(&WORKING.difference(&waves[1], &cosine), 2);
+        let speed = WORKING.root(&speed_squared, 2).ok_or(NotEnclosed::Digits)?;
+        let half = sine_and_cosine(&WORKING.divided(&release, 2));
+        let time = half.and_then(|half| flight(half, barrier)).ok_or(NotEnclosed::Digits)?;
+        Ok(Self { place, waves, speed_squared, speed, time, power })
+    }
+}
+
+/// The time from rest at `-A` to `place`, with the sine and the cosine of `A/2`.
+fn flight([modulus, cosine]: [Ball; 2], place: &Rational) -> Option<Ball> {
+    let half = WORKING.fraction(&(place * Rational::new(1.into(), 2.into())));
+    let [sine, cosine_there] = sine_and_cosine(&half)?;
     let (one, squared) = (WORKING.integer(1), |ball: &Ball| WORKING.product(ball, ball));
     let quarter = elliptic::carlson_rf(&Ball::zero(), &squared(&cosine), &one)?;
     let sine = WORKING.quotient(&sine, &modulus)?;

@@ -201,7 +201,9 @@ impl Flow {
             SlidingStop::Chatter(index) | SlidingStop::Undetermined(index) => {
                 Some((stop, arguments.get(index)?.clone()))
             }
-            SlidingStop::NoValue | SlidingStop::RestsOnWall | SlidingStop::EventsAccumulate => None,
+            SlidingStop::NoValue | SlidingStop::RestsOnWall(..) | SlidingStop::EventsAccumulate => {
+                None
+            }
         }
     }
 
@@ -268,8 +270,16 @@ impl Flow {
     }
 
     /// The reason why a motion was not followed beyond an event: a rest on a wall, or an accumulation.
-    pub(super) fn ended_at_event(&self) -> Option<SlidingStop> {
-        self.ended.get()
+    pub(super) fn ended_at_event(&self) -> Option<ResponseError> {
+        let events = &self.jumps.as_ref()?.events;
+        let gap = |wall: usize| Some(events.get(wall)?.expression.to_string());
+        Some(match self.ended.get()? {
+            SlidingStop::RestsOnWall(wall, None) => ResponseError::RestsOnWall(gap(wall)?),
+            SlidingStop::RestsOnWall(wall, Some(other)) => {
+                ResponseError::RestsOnTwoWalls(gap(wall.min(other))?, gap(wall.max(other))?)
+            }
+            _ => ResponseError::EventsAccumulate,
+        })
     }
 
     /// The motion across jumps between two times; `None` if it cannot be followed.
@@ -292,7 +302,7 @@ impl Flow {
                 // What was stopped has cost something too: a run of one evaluation a step.
                 self.evaluations.set(self.evaluations.get() + STEPS as u64);
                 self.stopped.set(Some(stop));
-                if matches!(stop, SlidingStop::RestsOnWall | SlidingStop::EventsAccumulate) {
+                if matches!(stop, SlidingStop::RestsOnWall(..) | SlidingStop::EventsAccumulate) {
                     self.ended.set(Some(stop));
                 }
                 None

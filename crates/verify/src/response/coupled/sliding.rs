@@ -60,8 +60,8 @@ pub(super) enum SlidingStop {
     Undetermined(usize),
     /// A rate has no value, or a step vanishes.
     NoValue,
-    /// The motion rests on a wall beside another one, or where forces jump.
-    RestsOnWall,
+    /// The motion rests on this wall, beside another one or where forces jump.
+    RestsOnWall(usize, Option<usize>),
     /// Other events accumulate, or one takes place at once with another.
     EventsAccumulate,
 }

@@ -212,12 +212,11 @@ impl CoupledProblem<'_> {
         if self.rests.get() {
             return ResponseError::NothingMoves { parameter, range: self.question.range };
         }
-        match self.in_phase.iter().chain([&self.in_time]).find_map(Flow::ended_at_event) {
-            Some(SlidingStop::EventsAccumulate) => return ResponseError::EventsAccumulate,
-            Some(_) => return ResponseError::RestsOnWall,
-            None => {}
+        let flows = self.in_phase.iter().chain([&self.in_time]);
+        if let Some(error) = flows.clone().find_map(Flow::ended_at_event) {
+            return error;
         }
-        let stopped = self.in_phase.iter().chain([&self.in_time]).find_map(Flow::stopped);
+        let stopped = flows.clone().find_map(Flow::stopped);
         match stopped {
             Some((SlidingStop::Chatter(_), argument)) => {
                 ResponseError::Chatters(argument.to_string())

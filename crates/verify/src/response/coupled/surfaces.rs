@@ -119,7 +119,8 @@ pub(super) struct RestMap {
 /// An event, compiled; the arguments are those of the rates.
 #[derive(Clone, Debug)]
 pub(super) struct EventMap {
-    /// The gap g.
+    /// The gap g, as it was given and compiled.
+    pub(super) expression: Expr,
     pub(super) gap: CompiledFunction,
     /// g_y, g_p, g_t in one row.
     pub(super) normal: Table,
@@ -291,6 +292,7 @@ impl JumpSurfaces {
         };
         let event = |event: &FlowEvent| -> Result<EventMap, ResponseError> {
             Ok(EventMap {
+                expression: event.gap.clone(),
                 gap: CompiledFunction::new(&event.gap, &all)?,
                 normal: table(std::slice::from_ref(&event.gap), false, &[&by_all])?,
                 after: table(&event.after, true, &[&by_all])?,

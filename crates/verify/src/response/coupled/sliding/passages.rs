@@ -131,8 +131,15 @@ impl EventRun<'_> {
         self.at_once =
             if self.time - self.last < AT_ONCE * duration { self.at_once + 1 } else { 0 };
         if self.at_once > MOST_AT_ONCE {
+            let is_met = |other: &usize| {
+                let own = &self.surfaces.events[*other];
+                *other != event
+                    && own.is_wall
+                    && self.time - self.passed[*other] < AT_ONCE * duration
+            };
+            let other = (0..self.surfaces.events.len()).find(is_met).or(self.resting);
             return Err(match map.is_wall {
-                true => SlidingStop::RestsOnWall,
+                true => SlidingStop::RestsOnWall(event, other.filter(|other| *other != event)),
                 false => SlidingStop::EventsAccumulate,
             });
         }

@@ -50,7 +50,9 @@ impl<'a> EventRun<'a> {
     pub(super) fn rest_on(&mut self, event: usize) -> Result<(), SlidingStop> {
         let is_alone = self.resting.is_none_or(|own| own == event) && self.sides.is_empty();
         let rest = self.surfaces.events[event].rest.as_ref();
-        let Some(rest) = rest.filter(|_| is_alone) else { return Err(SlidingStop::RestsOnWall) };
+        let other = self.resting.filter(|own| *own != event);
+        let stop = SlidingStop::RestsOnWall(event, other);
+        let Some(rest) = rest.filter(|_| is_alone) else { return Err(stop) };
         self.resting = Some(event);
         self.rests += 1;
         self.impacts = self.impacts_at_release;
@@ -65,7 +67,7 @@ impl<'a> EventRun<'a> {
         for (row, (normal, height)) in normals.iter().zip(heights).enumerate() {
             let along: f64 = (0..n).map(|k| normal[(0, k)] * directions[(row, k)]).sum();
             if along == 0.0 || !along.is_finite() {
-                return Err(SlidingStop::RestsOnWall);
+                return Err(stop);
             }
             for i in 0..n {
                 self.values[i] -= directions[(row, i)] * height / (along * self.sizes[i]);

@@ -133,13 +133,17 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
         return Err(Failure::because("a number of the impact is not finite".to_owned()));
     };
     let force = power_law(&setup, stiffness)?;
-    let is_lossy = setup.loss.is_some();
+    let lossless = match setup.loss {
+        None => Some(enclose_impact(amplitude, barrier, &force)?),
+        Some(_) => None,
+    };
     let impact = solve(setup)?;
     // A restitution gives a damping in doubles, which is taken as the number that is printed.
-    let damping = as_written(impact.damping).filter(|_| is_lossy);
-    let enclosure = match &damping {
-        Some(damping) => enclose_lossy_impact(amplitude, barrier, &force, damping)?,
-        None => enclose_impact(amplitude, barrier, &force)?,
+    let damping = as_written(impact.damping).filter(|_| lossless.is_none());
+    let enclosure = match (lossless, &damping) {
+        (Some(lossless), _) => lossless,
+        (None, Some(damping)) => enclose_lossy_impact(amplitude, barrier, &force, damping)?,
+        (None, None) => return Err(Failure::because("the damping is not finite".to_owned())),
     };
     let report = ImpactCertificateReport {
         impact: &impact,

@@ -134,3 +134,14 @@ fn bad_walls_are_refused_with_a_way_forward() {
         refusal(&["simulate", "v' = -v", "--wall", "v > 0", "--restitution", "1", "--from", "v=1"]);
     assert!(order.contains("v"), "{order}");
 }
+
+/// Two masses that lie on the ground at the same time are not followed by `response`: it names both walls, and
+/// what follows them.
+#[test]
+fn walls_on_which_a_motion_rests_at_once_are_named() {
+    let equations = "x'' + 1 + x'/10 = F*cos(t); y'' + 6/5 + y'/10 - x/100 = F*cos(t)";
+    let walls = ["--wall", "x > 0", "--wall", "y > 0", "--restitution", "0"];
+    let refusal = refusal(&[&["response", equations, "--vary", "F=1.5:2"], &walls[..]].concat());
+    assert!(refusal.contains("rest on two walls at once, `x = 0` and `y = 0`"), "{refusal}");
+    assert!(refusal.contains("`lindstedt simulate` with --wall follows it"), "{refusal}");
+}

@@ -192,12 +192,15 @@ fn follow_together<'a>(
     runs.into_iter().zip(ends.into_iter().flatten()).map(finished)
 }
 
+/// The memory of runs that have ended, boxed: a run that is moved leaves it where it is.
+type IdleMemory = Vec<Box<RunMemory>>;
+
 /// Integrates several motions side by side, round after round, and keeps the memory of a round for the next
 /// one: a motion from event to event needs a path for each of its flights.
 #[derive(Default)]
 pub struct SideBySide {
     tapes: Vec<Lanes>,
-    idle: Vec<Box<RunMemory>>,
+    idle: IdleMemory,
 }
 
 impl SideBySide {
@@ -263,13 +266,13 @@ impl RunMemory {
     /// # Errors
     /// There are no series on this side.
     fn take(
-        idle: &mut Vec<Box<Self>>,
+        idle: &mut IdleMemory,
         (system, events): (&System, &[Event]),
         expansions: &Expansions,
         signs: &[f64],
     ) -> Result<Box<Self>, SystemError> {
-        let fits = |own: &Box<Self>| own.root_signs == signs && own.expansions.is_like(expansions);
-        if let Some(found) = idle.iter().rposition(fits) {
+        let fits = |own: &Self| own.root_signs == signs && own.expansions.is_like(expansions);
+        if let Some(found) = idle.iter().rposition(|own| fits(own)) {
             let mut memory = idle.swap_remove(found);
             if memory.expansion.begin_anew(&system.numbers) {
                 memory.left.clear();
@@ -373,7 +376,7 @@ impl<'a> TaylorRun<'a> {
         events: &'a [Event],
         options: &'a SystemOptions,
         expansions: &'a Expansions,
-        idle: &mut Vec<Box<RunMemory>>,
+        idle: &mut IdleMemory,
     ) -> Result<Self, SystemError> {
         let no_series = || SystemError::Start(system.state.first().copied().unwrap_or(system.time));
         let sign = |root: &Root| match root.argument_at(system, start, from) < 0.0 {

@@ -13,7 +13,7 @@
 use std::collections::BTreeMap;
 
 use super::events::{BeforeEvents, CompiledEvents, EventRecord, GuardState};
-use super::hold::IDLE;
+use super::hold::{IDLE, Stretch};
 use super::walls::{WallEvent, WallRecord};
 use super::{Ready, Sampled, TrajectoryError, TrajectoryRequest, TrajectorySegment};
 use crate::system::{Integrator, Path, PathEnd, Solver};
@@ -206,7 +206,7 @@ impl<'a> EventRun<'a> {
     pub(super) fn advance(&mut self, path: Option<Path>) -> Result<(), TrajectoryError> {
         self.prepare()?;
         let state = std::mem::take(&mut self.state);
-        let (stretch, reason, last) =
+        let Stretch { pieces: stretch, reason, last } =
             self.course.pieces(self.equations(), path, self.from, state, self.integrator)?;
         self.steps += stretch.iter().map(|piece| piece.path.step_count()).sum::<usize>();
         let end = stretch.last().map_or(self.from, TrajectorySegment::end);

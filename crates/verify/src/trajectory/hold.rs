@@ -103,11 +103,19 @@ impl Layout {
     }
 }
 
+/// The motion from one impact or event to the next, or to its end.
+pub(super) struct Stretch {
+    pub(super) pieces: Vec<TrajectorySegment>,
+    /// The reason why it ends.
+    pub(super) reason: PathEnd,
+    /// The states at its end.
+    pub(super) last: Option<Vec<f64>>,
+}
+
 impl TrajectoryRequest {
     /// The motion segment by segment, each by the equations as typed or with surfaces held by
     /// friction, until a guard falls through zero or the motion ends; and the reason why. The first
-    /// segment, by the equations as typed, is given if it has been followed. Also returned is the state at the
-    /// end of the last segment.
+    /// segment, by the equations as typed, is given if it has been followed.
     pub(super) fn pieces(
         &self,
         equations: &Ready,
@@ -115,7 +123,7 @@ impl TrajectoryRequest {
         from: f64,
         state: Vec<f64>,
         integrator: Integrator,
-    ) -> Result<(Vec<TrajectorySegment>, PathEnd, Option<Vec<f64>>), TrajectoryError> {
+    ) -> Result<Stretch, TrajectoryError> {
         let options = self.options(integrator);
         let (mut pieces, mut regimes) = (Vec::with_capacity(1), Regimes::new());
         let (mut first, mut from, mut state) = (first, from, state);
@@ -177,7 +185,7 @@ impl TrajectoryRequest {
             }
             from = end;
         };
-        Ok((pieces, reason, last))
+        Ok(Stretch { pieces, reason, last })
     }
 
     /// The motion from a time on, until a held surface is released or one that was left is reached

@@ -227,11 +227,13 @@ fn roots_of_at_most(
             };
             if crosses && low < high {
                 let part = changes.place.unwrap_or(at_low / (at_low - at_end));
-                let root = match at_end == 0.0 {
-                    true => Some(end),
-                    false => {
-                        root_between(series, [low, end], at_low > 0.0, low + part * (end - low))
-                    }
+                let root = if end != high {
+                    // The end of the interval is the root itself.
+                    Some(high)
+                } else if at_end == 0.0 {
+                    Some(end)
+                } else {
+                    root_between(series, [low, end], at_low > 0.0, low + part * (end - low))
                 };
                 roots.extend(root.map(|root| (root, at_low < 0.0)));
             }

@@ -14,7 +14,7 @@ use num_integer::Integer as _;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
 use super::rational::{ratio, to_f64};
-use super::residue::Modulus;
+use super::residue::{Modulus, primes_below};
 use super::{Integer, Rational};
 
 /// A positive root.
@@ -151,17 +151,54 @@ pub(super) fn gcd(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
     monic(&a)
 }
 
-/// The greatest common divisor of two primitive polynomials by Euclid's algorithm modulo a prime, whose
-/// coefficients do not grow (W. S. Brown, *J. ACM* 18 (1971) 478); `None` if one of them is zero, or the
-/// prime tells too little.
+/// The greatest common divisor of two primitive polynomials by Euclid's algorithm modulo primes, whose
+/// coefficients do not grow, and the Chinese remainder theorem (W. S. Brown, *J. ACM* 18 (1971) 478); `None`
+/// if one of them is zero, or the primes tell too little.
 ///
 /// Modulo a prime that divides no leading coefficient the degree is not lower than that of the true
-/// divisor, so that what divides both is it.
+/// divisor, so that what divides both is it. Another prime is taken where the coefficients do not fit the
+/// product of those before: they then change.
 fn gcd_by_residues(a: &[Integer], b: &[Integer]) -> Option<Vec<Integer>> {
-    /// The largest prime below 2^59, and the radix of its multiplication.
-    const PRIME: u64 = (1 << 59) - 55;
-    const RADIX: u32 = 62;
-    let modulus = Modulus::new(PRIME, RADIX);
+    /// The largest prime below 2^59, and the radix of its multiplication; the bits and the radix of others.
+    const FIRST: (u64, u32) = ((1 << 59) - 55, 62);
+    const OTHERS: (u32, u32) = (50, 52);
+    /// Largest number of primes.
+    const MOST: usize = 30;
+    let others = primes_below(OTHERS.0, 8).map(|prime| (prime, OTHERS.1));
+    // The leading coefficient of the true divisor divides that of both.
+    let leading = a.last()?.gcd(b.last()?);
+    let mut known: Option<CombinedResidues> = None;
+    let mut before: Vec<Integer> = vec![];
+    for (prime, radix) in std::iter::once(FIRST).chain(others).take(MOST) {
+        let modulus = Modulus::new(prime, radix);
+        let Some(shared) = gcd_modulo(&modulus, a, b) else { continue };
+        if shared.len() == 1 {
+            return Some(vec![Integer::one()]);
+        }
+        let unit = modulus.product(modulus.integer(&leading), modulus.inverse(*shared.last()?));
+        let residues: Vec<u64> = shared.iter().map(|c| modulus.product(*c, unit)).collect();
+        let is_first = known.is_none();
+        match &mut known {
+            // A prime by which the degree is too high tells nothing.
+            Some(known) if known.values.len() < residues.len() => continue,
+            Some(known) if known.values.len() == residues.len() => known.add(&modulus, &residues),
+            _ => known = Some(CombinedResidues::new(&modulus, &residues)),
+        }
+        let centred = known.as_ref()?.centred();
+        if is_first || centred == before {
+            let found = without_content(centred.clone());
+            if is_divisor(&found, a) && is_divisor(&found, b) {
+                return Some(found);
+            }
+        }
+        before = centred;
+    }
+    None
+}
+
+/// The greatest common divisor of two polynomials modulo a prime, in its residues; `None` if the prime divides
+/// a leading coefficient, or one of the polynomials is zero.
+fn gcd_modulo(modulus: &Modulus, a: &[Integer], b: &[Integer]) -> Option<Vec<u64>> {
     let residues = |list: &[Integer]| -> Option<Vec<u64>> {
         let all: Vec<u64> = list.iter().map(|number| modulus.integer(number)).collect();
         all.last().is_some_and(|leading| *leading != 0).then_some(all)
@@ -183,19 +220,42 @@ fn gcd_by_residues(a: &[Integer], b: &[Integer]) -> Option<Vec<Integer>> {
         }
         (shared, rest) = (rest, shared);
     }
-    if shared.len() == 1 {
-        return Some(vec![Integer::one()]);
+    Some(shared)
+}
+
+/// Whole numbers by their remainders modulo a product of primes.
+struct CombinedResidues {
+    product: Integer,
+    values: Vec<Integer>,
+}
+
+impl CombinedResidues {
+    /// The remainders modulo one prime.
+    fn new(modulus: &Modulus, residues: &[u64]) -> Self {
+        let values = residues.iter().map(|c| Integer::from(modulus.plain(*c))).collect();
+        Self { product: Integer::from(modulus.prime), values }
     }
-    // The leading coefficient of the true divisor divides that of both.
-    let leading = modulus.integer(&a.last()?.gcd(b.last()?));
-    let centred = |c: u64| match c > PRIME / 2 {
-        true => Integer::from(c) - Integer::from(PRIME),
-        false => Integer::from(c),
-    };
-    let unit = modulus.product(leading, modulus.inverse(*shared.last()?));
-    let plain = |c: &u64| modulus.plain(modulus.product(*c, unit));
-    let found = without_content(shared.iter().map(|c| centred(plain(c))).collect());
-    (is_divisor(&found, a) && is_divisor(&found, b)).then_some(found)
+
+    /// Takes the remainders modulo another prime into account.
+    fn add(&mut self, modulus: &Modulus, residues: &[u64]) {
+        let unit = modulus.inverse(modulus.integer(&self.product));
+        for (value, residue) in self.values.iter_mut().zip(residues) {
+            let apart = modulus.difference(*residue, modulus.integer(value));
+            let multiple = modulus.plain(modulus.product(apart, unit));
+            *value += &self.product * Integer::from(multiple);
+        }
+        self.product = &self.product * Integer::from(modulus.prime);
+    }
+
+    /// The numbers of least size with these remainders.
+    fn centred(&self) -> Vec<Integer> {
+        let half = &self.product / Integer::from(2);
+        let centred = |value: &Integer| match *value > half {
+            true => value - &self.product,
+            false => value.clone(),
+        };
+        self.values.iter().map(centred).collect()
+    }
 }
 
 /// Whether a primitive polynomial divides another one; the quotient then has whole coefficients.
@@ -424,6 +484,37 @@ mod tests {
 
     fn polynomial(coefficients: &[i64]) -> Vec<Rational> {
         coefficients.iter().map(|&c| ratio(c, 1)).collect()
+    }
+
+    /// A divisor whose coefficients need several primes, and factors without a common one.
+    #[test]
+    fn a_common_divisor_of_long_coefficients_is_found_by_residues() {
+        let list = |numbers: &[Integer]| without_content(numbers.to_vec());
+        let times = |a: &[Integer], b: &[Integer]| -> Vec<Integer> {
+            let mut sum = vec![Integer::zero(); a.len() + b.len() - 1];
+            for (i, left) in a.iter().enumerate() {
+                for (k, right) in b.iter().enumerate() {
+                    sum[i + k] += left * right;
+                }
+            }
+            list(&sum)
+        };
+        let small = |numbers: &[i64]| numbers.iter().map(|c| Integer::from(*c)).collect::<Vec<_>>();
+        let (left, right) = (small(&[3, -5, 7]), small(&[-2, 9, 0, 11]));
+        for length in [1_u32, 40, 200, 700] {
+            let long =
+                |base: i64| -> Integer { num_traits::pow(Integer::from(base), length as usize) };
+            let divisor = list(&[long(3), -long(5), long(7), -long(2)]);
+            let found = gcd_by_residues(&times(&divisor, &left), &times(&divisor, &right));
+            let Some(found) = found else {
+                // The coefficients are longer than all primes together.
+                assert_eq!(length, 700);
+                continue;
+            };
+            let same = found == divisor || found.iter().zip(&divisor).all(|(a, b)| *a == -b);
+            assert!(same && found.len() == 4, "{length}: {found:?}");
+        }
+        assert_eq!(gcd_by_residues(&left, &right), Some(vec![Integer::one()]));
     }
 
     /// (z - 2)(z - 1/3)(z^2 - 6 z + 4)(z + 1)(z - 5)^2: fractions, quadratic roots 3 -+ sqrt 5, a

@@ -8,6 +8,7 @@
 //! factors are: `(x - xc)^(3/2)*H(x - xc)` is 0 on the near side of the barrier, where the power
 //! has no real value.
 
+mod prepared;
 mod sampled;
 mod specialised;
 
@@ -21,6 +22,7 @@ use super::{Expr, Function, Node};
 use crate::exact::rational::{Integer, Rational, to_f64};
 use crate::symbol::Symbol;
 
+pub use prepared::PreparedList;
 pub use sampled::SampledFunctions;
 
 /// The reason why an expression has no number.

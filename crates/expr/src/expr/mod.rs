@@ -66,7 +66,8 @@ use crate::exact::rational::Rational;
 use crate::symbol::Symbol;
 
 pub use evaluate::{
-    CompiledFunction, CompiledFunctions, CompiledList, EvaluationError, SampledFunctions,
+    CompiledFunction, CompiledFunctions, CompiledList, EvaluationError, PreparedList,
+    SampledFunctions,
 };
 pub use function::Function;
 // Problem files show the place of an error in the same way.

@@ -24,6 +24,9 @@ pub struct Event<'a, S = State> {
     pub(super) action: Action<'a, S>,
     /// The number of values, from the first on, that the function reads.
     pub(super) reads: usize,
+    /// The factors of the first values of which the function is a sum, beside a constant; `None` for another
+    /// function.
+    pub(super) factors: Option<Vec<f64>>,
 }
 
 /// The direction of a zero crossing that counts.
@@ -77,13 +80,19 @@ impl<'a, S> Event<'a, S> {
     /// [`Event::record`].
     pub fn new(function: impl Fn(&S) -> f64 + 'a, action: Action<'a, S>) -> Self {
         let function = Box::new(function);
-        Self { function, direction: Direction::Either, action, reads: usize::MAX }
+        Self { function, direction: Direction::Either, action, reads: usize::MAX, factors: None }
     }
 
     /// The function reads only so many values, from the first on, and the time: between the ends of a
     /// step it is given the others as they are at its start.
     pub fn reading(self, values: usize) -> Self {
         Self { reads: values, ..self }
+    }
+
+    /// The function is a constant and the sum of the first values, each times its factor: where it is larger
+    /// than it can change within a step, it is not searched for zeros.
+    pub fn linear(self, factors: Vec<f64>) -> Self {
+        Self { factors: Some(factors), ..self }
     }
 
     /// Counts only crossings from negative to positive.
@@ -142,6 +151,13 @@ impl SignTracker {
         event: &Event<S>,
         moved: Option<&S>,
     ) -> Result<Vec<(f64, bool)>, NotFinite> {
+        if let (Some(factors), Some(positive), None) = (&event.factors, self.positive, moved) {
+            let value = (event.function)(&step.start);
+            let own = if positive { value } else { -value };
+            if own > step.largest_change(factors) {
+                return Ok(vec![]);
+            }
+        }
         let point = RefCell::new(step.start.clone());
         let value_at = |fraction: f64| {
             let point = &mut *point.borrow_mut();
@@ -333,6 +349,32 @@ mod tests {
     #[test]
     fn a_sign_that_changes_between_two_steps_is_a_crossing() {
         assert_eq!(crossings(&[(1.0, 1e-9), (-1e-9, -1.0)]), [vec![], vec![0.0]]);
+    }
+
+    /// A function that is known to be linear is searched where it may be zero within the step, and nowhere
+    /// else.
+    #[test]
+    fn a_linear_event_is_not_searched_where_it_cannot_be_zero() {
+        let calls = std::cell::Cell::new(0);
+        let counted = |state: &State| {
+            calls.set(calls.get() + 1);
+            2.0 * state.x - 1.0
+        };
+        let event = Event::new(counted, Action::Record).linear(vec![2.0]);
+        let mut watch = SignTracker::default();
+        let mut happens = |from: f64, to: f64, is_first: bool| {
+            let step = line(from, to);
+            let moved = is_first.then(|| step.state_at(1.0));
+            calls.set(0);
+            let found = watch.crossings(&step, &event, moved.as_ref()).unwrap();
+            (found.len(), calls.get() > 1)
+        };
+        assert_eq!(happens(3.0, 2.9, true), (0, true));
+        assert_eq!(happens(2.9, 2.0, false), (0, false));
+        assert_eq!(happens(2.0, 1.3, false), (0, false));
+        assert_eq!(happens(1.3, 0.4, false), (1, true));
+        assert_eq!(happens(0.4, 0.35, false), (0, false));
+        assert_eq!(happens(0.35, 0.7, false), (1, true));
     }
 
     #[test]

@@ -20,6 +20,7 @@ use super::scheme::{Scheme, explicit, implicit};
 use super::trajectory::{
     EventOccurrence, FRACTIONS, StopReason, TERMS, Trajectory, TrajectoryStep,
 };
+use super::verner::VernerSteps;
 use crate::interrupt::Interrupt;
 use to_event::StepToEnd;
 
@@ -507,7 +508,8 @@ impl<S: Sample> ODE<f64, S::Values> for CountedRates<'_, S> {
     fn diff(&self, t: f64, values: &S::Values, derivative: &mut S::Values) {
         (self.rates)(t, values, derivative);
         self.evaluations.set(self.evaluations.get() + 1);
-        if !derivative.as_ref().iter().all(|rate| rate.is_finite()) {
+        // All are looked at, which takes less time than to stop at the first.
+        if !derivative.as_ref().iter().fold(true, |all, rate| all & rate.is_finite()) {
             self.non_finite.set(true);
         }
     }
@@ -635,15 +637,16 @@ impl<S: Sample> Leg<'_, '_, S> {
 
     /// Returns the values at the end time or the first event, the event, and the next step, without
     /// limits of a step; `None` if neither is reached.
-    fn end_or_event<M: OrdinaryNumericalMethod<f64, S::Values>>(
+    fn end_or_event(
         &self,
-        scheme: &Scheme<M, S::Values>,
+        scheme: &Scheme<VernerSteps<S::Values>, S::Values>,
         start: S,
         first_step: f64,
     ) -> Option<(S, Option<usize>, f64)> {
         let mut solver = self.solver(scheme, &start, first_step)?;
         let mut watches = vec![SignTracker::default(); self.events.len()];
         let (mut state, mut first) = (start, true);
+        let mut quotient = [(); TERMS].map(|()| state.values().leading(self.inside));
         for attempts in 0.. {
             let time = state.time();
             let remaining = self.end_time - time;
@@ -678,13 +681,21 @@ impl<S: Sample> Leg<'_, '_, S> {
             }
             if !self.events.is_empty() {
                 let begin = S::new(time, state.values().leading(self.inside));
-                let (step, _) = self.accepted(scheme, &mut solver, &begin)?;
-                let moved = first.then(|| self.extrapolated(&begin, step.length));
+                solver.write_quotient(&mut quotient);
+                let is_finite =
+                    |values: &S::Values| values.as_ref().iter().all(|own| own.is_finite());
+                if !quotient.iter().all(is_finite) {
+                    return None;
+                }
+                let length = solver.t() - solver.t_prev();
+                let step = TrajectoryStep::from_quotient(self.phase, begin, length, quotient);
+                let moved = first.then(|| self.extrapolated(&step.start, step.length));
                 let met = self.located_events(&step, &mut watches, moved.as_ref())?;
                 if let Some((happening, event, _)) = met.into_iter().next() {
                     let end = self.whole_at(scheme, state, &happening)?;
                     return Some((end, Some(event), solver.h()));
                 }
+                quotient = step.into_quotient();
             }
             (state, first) = (next, false);
         }
@@ -692,9 +703,9 @@ impl<S: Sample> Leg<'_, '_, S> {
     }
 
     /// Returns all values where the first ones are known, within the step that begins in a state.
-    fn whole_at<M: OrdinaryNumericalMethod<f64, S::Values>>(
+    fn whole_at(
         &self,
-        scheme: &Scheme<M, S::Values>,
+        scheme: &Scheme<VernerSteps<S::Values>, S::Values>,
         state: S,
         known: &S,
     ) -> Option<S> {

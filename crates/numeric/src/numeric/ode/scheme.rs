@@ -19,7 +19,7 @@ pub(super) struct Scheme<M, Y> {
 }
 
 /// Verner's 9(8) pair, with its own interpolant.
-pub(super) fn explicit<Y: StateVector>() -> Scheme<impl OrdinaryNumericalMethod<f64, Y>, Y> {
+pub(super) fn explicit<Y: StateVector>() -> Scheme<VernerSteps<Y>, Y> {
     let inside = |method: &mut VernerSteps<Y>, time| method.values_at(time);
     Scheme { fresh: VernerSteps::new, inside }
 }

@@ -232,6 +232,32 @@ impl<S: Sample> TrajectoryStep<S> {
         Self { phase, start, length, quotient }
     }
 
+    /// The interpolant with these terms of its quotient.
+    pub(super) fn from_quotient(
+        phase: usize,
+        start: S,
+        length: f64,
+        quotient: [S::Values; TERMS],
+    ) -> Self {
+        Self { phase, start, length, quotient }
+    }
+
+    /// The terms of the quotient, whose memory may serve for the next step.
+    pub(super) fn into_quotient(self) -> [S::Values; TERMS] {
+        self.quotient
+    }
+
+    /// The largest change within the step, and a little more, of a sum of the first values with these
+    /// factors: a Chebyshev series is nowhere larger than the sum of its coefficients.
+    pub(super) fn largest_change(&self, factors: &[f64]) -> f64 {
+        /// Allowance for rounding.
+        const MORE: f64 = 1.0 + 1e-9;
+        let term = |values: &S::Values| -> f64 {
+            factors.iter().zip(values.as_ref()).map(|(factor, value)| factor * value).sum()
+        };
+        MORE * self.quotient.iter().map(|values| term(values).abs()).sum::<f64>()
+    }
+
     /// The values at the fraction s of the step.
     pub(super) fn values_at(&self, fraction: f64) -> S::Values {
         self.state_at(fraction).values()
@@ -264,6 +290,11 @@ static TRANSFORM: LazyLock<[[f64; TERMS]; TERMS]> = LazyLock::new(|| {
         })
     })
 });
+
+/// The weights of the samples at [`FRACTIONS`] in each term of a Chebyshev series.
+pub(super) fn quotient_weights() -> [[f64; TERMS]; TERMS] {
+    *TRANSFORM
+}
 
 fn chebyshev_coefficients(values: &[f64; TERMS]) -> [f64; TERMS] {
     std::array::from_fn(|k| {

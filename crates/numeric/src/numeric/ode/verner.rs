@@ -20,9 +20,11 @@ use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
 use differential_equations::stats::Evals;
 use differential_equations::status::Status;
 use differential_equations::tableau::ButcherTableau;
+use pulp::{Arch, Simd, WithSimd};
 
 use super::integrate::IntegrationOptions;
 use super::sample::StateVector;
+use super::trajectory::{FRACTIONS, TERMS, quotient_weights};
 
 /// Stages of a step, and with those of its interpolant.
 const STAGES: usize = 16;
@@ -43,6 +45,8 @@ struct Coefficients {
     low: Terms,
     /// The coefficients of the stages in the interpolant, a row for each power of the fraction of the step, from 1 to 9.
     inside: [[f64; ALL_STAGES]; ORDER],
+    /// The coefficients of the stages in each term of the quotient of a step, see `TrajectoryStep`.
+    quotient: [Terms; TERMS],
 }
 
 static COEFFICIENTS: LazyLock<Coefficients> = LazyLock::new(|| {
@@ -51,7 +55,19 @@ static COEFFICIENTS: LazyLock<Coefficients> = LazyLock::new(|| {
         row.iter().copied().enumerate().filter(|(_, factor)| *factor != 0.0).collect()
     };
     let inside = table.bi.unwrap_or([[0.0; ALL_STAGES]; ALL_STAGES]);
+    // The rise of the interpolant over the fraction of the step, by the stages.
+    let over_fraction = |fraction: f64| -> [f64; ALL_STAGES] {
+        inside.map(|row| row[..ORDER].iter().rev().fold(0.0, |sum, own| sum * fraction + own))
+    };
+    let samples = FRACTIONS.map(over_fraction);
+    let quotient = quotient_weights().map(|weights| {
+        let by_stage: [f64; ALL_STAGES] = std::array::from_fn(|stage| {
+            weights.iter().zip(&samples).map(|(weight, sample)| weight * sample[stage]).sum()
+        });
+        terms(&by_stage)
+    });
     Coefficients {
+        quotient,
         nodes: table.c,
         stages: table.a.iter().map(|row| terms(row)).collect(),
         high: terms(&table.b),
@@ -82,6 +98,10 @@ pub(super) struct VernerSteps<Y: StateVector> {
     scratch: [Y; 2],
     /// The first values at which rates are evaluated behind the step, and the rates.
     leading: [Y; 2],
+    /// As many zeros as there are interpolated values.
+    zeros: Y,
+    /// The widest registers of the processor.
+    arch: Arch,
     rejections: usize,
     status: Status<f64, Y>,
 }
@@ -110,6 +130,8 @@ impl<Y: StateVector> VernerSteps<Y> {
             stages: vec![],
             scratch: [Y::zeros(), Y::zeros()],
             leading: [Y::zeros(), Y::zeros()],
+            zeros: Y::zeros(),
+            arch: Arch::new(),
             rejections: 0,
             status: Status::Uninitialized,
         }
@@ -135,8 +157,30 @@ impl<Y: StateVector> VernerSteps<Y> {
         }
         let factors = &factors[..count];
         let mut found = self.leading[0].clone();
-        add(&self.values_before, self.step_before, factors, &self.stages, &mut found);
+        self.arch.dispatch(StageSum {
+            values: self.values_before.as_ref(),
+            step: self.step_before,
+            terms: factors,
+            stages: &self.stages,
+            count: self.values.as_ref().len(),
+            into: found.as_mut(),
+        });
         Some(found)
+    }
+
+    /// Writes the terms of the quotient of the last step, of the values that are interpolated, in its
+    /// Chebyshev series.
+    pub(super) fn write_quotient(&self, quotient: &mut [Y; TERMS]) {
+        for (term, factors) in quotient.iter_mut().zip(&COEFFICIENTS.quotient) {
+            self.arch.dispatch(StageSum {
+                values: self.zeros.as_ref(),
+                step: self.step_before,
+                terms: factors,
+                stages: &self.stages,
+                count: self.values.as_ref().len(),
+                into: term.as_mut(),
+            });
+        }
     }
 
     /// The first step by the sizes of the rates and of their change (E. Hairer, S. P. Norsett, G.
@@ -175,7 +219,14 @@ impl<Y: StateVector> VernerSteps<Y> {
         let table = &*COEFFICIENTS;
         let all = if stage < STAGES { &mut self.scratch } else { &mut self.leading };
         let [at, rates] = all;
-        add(&self.values, self.step, &table.stages[stage], &self.stages, at);
+        self.arch.dispatch(StageSum {
+            values: self.values.as_ref(),
+            step: self.step,
+            terms: &table.stages[stage],
+            stages: &self.stages,
+            count: self.values.as_ref().len(),
+            into: at.as_mut(),
+        });
         equations.diff(self.time + table.nodes[stage] * self.step, at, rates);
         set_stage(&mut self.stages, self.values.as_ref().len(), stage, rates.as_ref());
     }
@@ -186,32 +237,55 @@ fn set_stage(stages: &mut [f64], count: usize, stage: usize, rates: &[f64]) {
     stages[stage * count..][..rates.len()].copy_from_slice(rates);
 }
 
-/// Writes the first values, as many as the sum has, with the products of a step, factors and rates of the
-/// stages added.
-fn add<Y: StateVector>(values: &Y, step: f64, terms: &[(usize, f64)], stages: &[f64], sum: &mut Y) {
-    /// Number of values whose sums are held in registers.
-    const WIDTH: usize = 8;
-    let (values, sum) = (values.as_ref(), sum.as_mut());
-    let (count, last) = (values.len(), sum.len());
-    let mut scaled = [(0, 0.0); ALL_STAGES];
-    for (scaled, (stage, factor)) in scaled.iter_mut().zip(terms) {
-        *scaled = (stage * count, factor * step);
-    }
-    let terms = &scaled[..terms.len()];
-    let whole = last - last % WIDTH;
-    for first in (0..whole).step_by(WIDTH) {
+/// The first values, as many as there are to write, with the products of a step, factors and rates of the
+/// stages added, in the order of the stages.
+struct StageSum<'a> {
+    values: &'a [f64],
+    step: f64,
+    terms: &'a [(usize, f64)],
+    /// The rates of all stages, one after the other.
+    stages: &'a [f64],
+    /// The number of rates of a stage.
+    count: usize,
+    into: &'a mut [f64],
+}
+
+impl StageSum<'_> {
+    /// Writes so many sums from one on, which stay in registers.
+    #[inline(always)]
+    fn write<const WIDTH: usize>(&mut self, first: usize) {
         let mut part = [0.0; WIDTH];
-        part.copy_from_slice(&values[first..first + WIDTH]);
-        for (stage, factor) in terms {
-            for (part, rate) in part.iter_mut().zip(&stages[stage + first..][..WIDTH]) {
+        part.copy_from_slice(&self.values[first..first + WIDTH]);
+        for (stage, factor) in self.terms {
+            let factor = factor * self.step;
+            let rates = &self.stages[stage * self.count + first..][..WIDTH];
+            for (part, rate) in part.iter_mut().zip(rates) {
                 *part += factor * rate;
             }
         }
-        sum[first..first + WIDTH].copy_from_slice(&part);
+        self.into[first..first + WIDTH].copy_from_slice(&part);
     }
-    for index in whole..last {
-        let own = terms.iter().map(|(stage, factor)| factor * stages[stage + index]);
-        sum[index] = own.fold(values[index], |sum, own| sum + own);
+}
+
+impl WithSimd for StageSum<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, _: S) {
+        let last = self.into.len();
+        let mut first = 0;
+        while last - first >= 8 {
+            self.write::<8>(first);
+            first += 8;
+        }
+        if last - first >= 4 {
+            self.write::<4>(first);
+            first += 4;
+        }
+        while first < last {
+            self.write::<1>(first);
+            first += 1;
+        }
     }
 }
 
@@ -228,6 +302,8 @@ impl<Y: StateVector> OrdinaryNumericalMethod<f64, Y> for VernerSteps<Y> {
         self.values_before = values.clone();
         self.rates = values.clone();
         let first = values.leading(self.interpolated);
+        self.zeros = first.clone();
+        self.zeros.as_mut().fill(0.0);
         self.leading = [first.clone(), first];
         self.stages = vec![0.0; ALL_STAGES * values.as_ref().len()];
         self.scratch = [values.clone(), values.clone()];
@@ -258,8 +334,16 @@ impl<Y: StateVector> OrdinaryNumericalMethod<f64, Y> for VernerSteps<Y> {
             self.evaluate(equations, stage);
         }
         let [high, low] = &mut self.scratch;
-        add(&self.values, self.step, &table.high, &self.stages, high);
-        add(&self.values, self.step, &table.low, &self.stages, low);
+        for (terms, sum) in [(&table.high, &mut *high), (&table.low, &mut *low)] {
+            self.arch.dispatch(StageSum {
+                values: self.values.as_ref(),
+                step: self.step,
+                terms,
+                stages: &self.stages,
+                count,
+                into: sum.as_mut(),
+            });
+        }
         let (high, low) = (high.as_ref(), low.as_ref());
         let errors = self.values.as_ref().iter().zip(high).zip(low).map(|((value, high), low)| {
             let size = value.abs().max(high.abs());

@@ -10,32 +10,43 @@
 use std::cell::RefCell;
 
 use super::surfaces::Table;
-use crate::expr::CompiledList;
+use crate::expr::PreparedList;
 
 /// The rates of a motion, with those of its variations if they are followed.
 pub(super) struct ScaledRates {
     states: usize,
-    alone: TermList,
-    varied: Option<TermList>,
+    alone: RowList,
+    varied: Option<RowList>,
 }
 
-/// Compiled terms with the use of each.
-struct TermList {
-    values: CompiledList,
-    terms: Vec<Term>,
-    /// Memory for registers and values, which calls share.
-    memory: RefCell<(Vec<f64>, Vec<f64>)>,
+/// Compiled entries of a matrix, row by row.
+struct RowList {
+    values: RefCell<PreparedList>,
+    rows: Vec<Row>,
+    slopes: Vec<Slope>,
 }
 
-/// The use of a value.
-enum Term {
-    /// The rate of a state, over its size.
-    Rate { state: usize, size: f64 },
-    /// The factor of the variations from one index on, times a ratio of sizes, in the rates of those from
-    /// another one on.
-    Slope { rates: usize, variations: usize, ratio: f64 },
-    /// The rate of one variation by the parameter, in the unit over the size.
-    ByParameter { rate: usize, unit: f64, size: f64 },
+/// The rate of a state and of its variations.
+struct Row {
+    state: usize,
+    /// The size of the state.
+    size: f64,
+    /// The index of the value of the rate.
+    rate: Option<usize>,
+    /// The derivatives by the states: the first and the one behind the last.
+    slopes: [usize; 2],
+    /// The index of the derivative by the parameter, and the unit of the variations.
+    by_parameter: Option<(usize, f64)>,
+}
+
+/// The factor of the variations of a state in the rates of those of another one.
+struct Slope {
+    /// The index of the value.
+    value: usize,
+    /// The place of these variations.
+    variations: usize,
+    /// The ratio of the sizes of both states.
+    ratio: f64,
 }
 
 impl ScaledRates {
@@ -48,19 +59,34 @@ impl ScaledRates {
         sizes: &[f64],
     ) -> Self {
         let n = rates.rows();
-        let list = |table: &Table, unit: f64| -> TermList {
-            let term = |(row, column): (usize, usize)| match column {
-                0 => Term::Rate { state: row, size: sizes[row] },
-                column if column <= n => Term::Slope {
-                    rates: n + row * (n + 1),
-                    variations: n + (column - 1) * (n + 1),
-                    ratio: sizes[column - 1] / sizes[row],
-                },
-                _ => Term::ByParameter { rate: n + row * (n + 1) + n, unit, size: sizes[row] },
-            };
+        let list = |table: &Table, unit: f64| -> RowList {
             let (places, values) = table.specialised(n + 2, n + 1, behind_time);
-            let memory = RefCell::new((vec![], vec![0.0; places.len()]));
-            TermList { values, terms: places.into_iter().map(term).collect(), memory }
+            let (mut rows, mut slopes) = (Vec::with_capacity(n), Vec::with_capacity(places.len()));
+            for state in 0..n {
+                let own = |(value, (row, column)): (usize, &(usize, usize))| {
+                    (*row == state).then_some((value, *column))
+                };
+                let entries = || places.iter().enumerate().filter_map(own);
+                let of_column = |wanted: usize| {
+                    entries().find(|(_, column)| *column == wanted).map(|(value, _)| value)
+                };
+                let first = slopes.len();
+                slopes.extend(entries().filter(|(_, column)| (1..=n).contains(column)).map(
+                    |(value, column)| Slope {
+                        value,
+                        variations: n + (column - 1) * (n + 1),
+                        ratio: sizes[column - 1] / sizes[state],
+                    },
+                ));
+                rows.push(Row {
+                    state,
+                    size: sizes[state],
+                    rate: of_column(0),
+                    slopes: [first, slopes.len()],
+                    by_parameter: of_column(n + 1).map(|value| (value, unit)),
+                });
+            }
+            RowList { values: RefCell::new(PreparedList::new(&values)), rows, slopes }
         };
         Self {
             states: n,
@@ -76,26 +102,74 @@ impl ScaledRates {
 
     /// Writes the rates at these arguments, with those of the variations behind the states, if there are any.
     pub(super) fn write(&self, arguments: &[f64], scaled: &[f64], rates: &mut [f64]) {
-        let width = self.states + 1;
         let list = match &self.varied {
             Some(varied) if !self.are_alone(scaled.len()) => varied,
             _ => &self.alone,
         };
-        let (registers, values) = &mut *list.memory.borrow_mut();
-        list.values.call(arguments, registers, values);
-        rates.fill(0.0);
-        for (term, value) in list.terms.iter().zip(values) {
-            match *term {
-                Term::Rate { state, size } => rates[state] = *value / size,
-                Term::Slope { rates: to, variations, ratio } => {
-                    let slope = *value * ratio;
-                    let changes = &scaled[variations..variations + width];
-                    for (rate, change) in rates[to..to + width].iter_mut().zip(changes) {
-                        *rate += slope * change;
+        let values = &mut *list.values.borrow_mut();
+        values.call(arguments);
+        for row in &list.rows {
+            rates[row.state] = row.rate.map_or(0.0, |rate| values.value(rate) / row.size);
+        }
+        if self.are_alone(scaled.len()) {
+            return;
+        }
+        // A few sums of a number that is known stay in registers.
+        match self.states {
+            1 => list.write_variations::<2>(values, scaled, rates),
+            2 => list.write_variations::<3>(values, scaled, rates),
+            3 => list.write_variations::<4>(values, scaled, rates),
+            4 => list.write_variations::<5>(values, scaled, rates),
+            5 => list.write_variations::<6>(values, scaled, rates),
+            6 => list.write_variations::<7>(values, scaled, rates),
+            7 => list.write_variations::<8>(values, scaled, rates),
+            8 => list.write_variations::<9>(values, scaled, rates),
+            states => {
+                for row in &list.rows {
+                    let first = states + row.state * (states + 1);
+                    let sums = &mut rates[first..=first + states];
+                    sums.fill(0.0);
+                    for slope in &list.slopes[row.slopes[0]..row.slopes[1]] {
+                        let factor = values.value(slope.value) * slope.ratio;
+                        let changes = &scaled[slope.variations..];
+                        for (sum, change) in sums.iter_mut().zip(changes) {
+                            *sum += factor * change;
+                        }
                     }
+                    sums[states] += row.by_parameter(values);
                 }
-                Term::ByParameter { rate, unit, size } => rates[rate] += unit * *value / size,
             }
+        }
+    }
+}
+
+impl Row {
+    /// The part of the parameter in the rate of the variation by it.
+    fn by_parameter(&self, values: &PreparedList) -> f64 {
+        self.by_parameter.map_or(0.0, |(value, unit)| unit * values.value(value) / self.size)
+    }
+}
+
+impl RowList {
+    /// Writes the rates of the variations of one state less than the width.
+    fn write_variations<const WIDTH: usize>(
+        &self,
+        values: &PreparedList,
+        scaled: &[f64],
+        rates: &mut [f64],
+    ) {
+        let states = WIDTH - 1;
+        for row in &self.rows {
+            let mut sums = [0.0; WIDTH];
+            for slope in &self.slopes[row.slopes[0]..row.slopes[1]] {
+                let factor = values.value(slope.value) * slope.ratio;
+                let changes = &scaled[slope.variations..][..WIDTH];
+                for (sum, change) in sums.iter_mut().zip(changes) {
+                    *sum += factor * change;
+                }
+            }
+            sums[states] += row.by_parameter(values);
+            rates[states + row.state * WIDTH..][..WIDTH].copy_from_slice(&sums);
         }
     }
 }

@@ -22,6 +22,7 @@ mod passages;
 mod resting;
 
 use std::cell::{Cell, RefCell};
+use std::rc::Rc;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -138,6 +139,9 @@ struct EventRun<'a> {
     /// The times of all impacts and other events.
     times: Vec<f64>,
     evaluations: Cell<u64>,
+    /// The rates where nothing holds that were prepared before, with the sides and the wall on which the motion
+    /// rests.
+    prepared: RefCell<Vec<(Vec<f64>, Option<usize>, Rc<ScaledRates>)>>,
 }
 
 /// Follows a motion from a start, in the sizes of the states, between two times. With a `unit` the
@@ -353,7 +357,26 @@ impl<'a> EventRun<'a> {
             slowest: f64::INFINITY,
             times: Vec::new(),
             evaluations: Cell::new(0),
+            prepared: RefCell::default(),
         }
+    }
+
+    /// The rates where nothing holds, prepared once for all legs on the same sides.
+    fn free_rates(&self) -> Rc<ScaledRates> {
+        let all = &mut *self.prepared.borrow_mut();
+        let known =
+            all.iter().find(|(sides, rest, _)| (sides, rest) == (&self.sides, &self.resting));
+        if let Some((_, _, known)) = known {
+            return known.clone();
+        }
+        let rest = self.resting_map();
+        let rates = rest.map_or(&self.surfaces.rates, |rest| &rest.rates);
+        let varied = rest.map_or(&self.surfaces.varied, |rest| &rest.varied);
+        let varied = self.unit.map(|unit| (varied, unit));
+        let behind_time = &self.here()[self.surfaces.states + 1..];
+        let own = Rc::new(ScaledRates::new(rates, varied, behind_time, self.sizes));
+        all.push((self.sides.clone(), self.resting, own.clone()));
+        own
     }
 
     /// The arguments of all functions where the motion is.
@@ -455,16 +478,7 @@ impl<'a> EventRun<'a> {
         let memory = RefCell::new(run.here());
         let memory = &memory;
         // Where nothing holds, the sides stay what they are.
-        let free = run.held.is_empty().then(|| {
-            let varied = rest.map_or(&surfaces.varied, |rest| &rest.varied);
-            let behind_time = &memory.borrow()[n + 1..];
-            ScaledRates::new(
-                rates_here,
-                run.unit.map(|unit| (varied, unit)),
-                behind_time,
-                run.sizes,
-            )
-        });
+        let free = run.held.is_empty().then(|| run.free_rates());
         // The instants at which the rates were asked for, each with the states.
         let seen = RefCell::new(Vec::new());
         let rates = |time: f64, values: &Vec<f64>, rates: &mut Vec<f64>| {
@@ -492,6 +506,7 @@ impl<'a> EventRun<'a> {
         };
         let mut events: Vec<Event<Point<Vec<f64>>>> = Vec::new();
         let mut meetings = Vec::new();
+        let normals = surfaces.normals.at(&memory.borrow());
         for index in 0..run.sides.len() {
             if run.held.unknowns.contains(&index) {
                 for side in [1.0, -1.0] {
@@ -507,13 +522,20 @@ impl<'a> EventRun<'a> {
                     meetings.push(Meeting::Released(index, side));
                 }
             } else if !run.held.contains(index) {
-                let (side, unseen) = (run.sides[index], UNSEEN * run.size_of_height(index));
+                let side = run.sides[index];
+                let factors: Vec<f64> =
+                    (0..n).map(|k| side * normals[(index, k)] * run.sizes[k]).collect();
+                let unseen = UNSEEN * factors.iter().map(|factor| factor.abs()).sum::<f64>();
                 let height = move |point: &Point<Vec<f64>>| {
                     let arguments = &mut *memory.borrow_mut();
                     set_states(&point.y, run.sizes, point.t, arguments);
                     side * surfaces.heights[index].call(arguments) + unseen
                 };
-                events.push(Event::new(height, Action::Stop).falling().reading(n));
+                let event = Event::new(height, Action::Stop).falling().reading(n);
+                events.push(match surfaces.is_linear[index] {
+                    true => event.linear(factors),
+                    false => event,
+                });
                 meetings.push(Meeting::Reached(index));
             }
         }

@@ -145,6 +145,8 @@ pub(super) struct JumpSurfaces {
     pub(super) arguments: Vec<Expr>,
     /// Whether the rates on one side of all surfaces, and the arguments, have no corner.
     pub(super) smooth: bool,
+    /// Whether u of each surface is a constant and a sum of the states, each times a constant.
+    pub(super) is_linear: Vec<bool>,
     /// Whether a motion can stay on each surface, because du/dt depends on its side.
     pub(super) holds: Vec<bool>,
     /// The factors c of the states where u = d/dt (c y), so that c y stays what it is on the surface; `None`
@@ -223,6 +225,13 @@ impl JumpSurfaces {
         for (rise, name) in rises.iter().zip(&names) {
             let by_side = slope(rise, *name)?;
             holds.push(!by_side.is_zero() && !by_side.expand()?.is_zero());
+        }
+        let mut is_linear = Vec::new();
+        for argument in &sides.arguments {
+            let slopes = slopes(argument, states)?;
+            let is_constant =
+                |slope: &Expr| !known[..=states.len()].iter().any(|name| slope.contains(*name));
+            is_linear.push(!argument.contains(time) && slopes.iter().all(is_constant));
         }
         let mut places = Vec::new();
         for argument in &sides.arguments {
@@ -319,6 +328,7 @@ impl JumpSurfaces {
             varied_rises: table(&rises, false, &[&with_parameter])?,
             smooth: !rates.iter().chain(&sides.arguments).any(Expr::contains_corner),
             arguments: sides.arguments,
+            is_linear,
             holds,
             places,
         }))

@@ -146,10 +146,8 @@ impl ShortProgram {
             }
         }
         let mut places = vec![0_u8; list.size()];
-        let mut next = 0;
-        for place in (0..list.size()).filter(|place| !is_joined[*place]) {
-            places[place] = u8::try_from(next).ok()?;
-            next += 1;
+        for (own, place) in (0..list.size()).filter(|place| !is_joined[*place]).enumerate() {
+            places[place] = u8::try_from(own).ok()?;
         }
         let mut program = Self {
             argument_count: list.argument_count,
@@ -234,7 +232,7 @@ impl ShortProgram {
             return;
         }
         // After a call with another number of arguments nothing is known.
-        if self.constants.first().is_some() && self.values[self.argument_count].is_nan() {
+        if !self.constants.is_empty() && self.values[self.argument_count].is_nan() {
             self.set_constants();
         }
         for (value, argument) in self.values.iter_mut().zip(arguments) {

@@ -139,9 +139,15 @@ struct EventRun<'a> {
     /// The times of all impacts and other events.
     times: Vec<f64>,
     evaluations: Cell<u64>,
-    /// The rates where nothing holds that were prepared before, with the sides and the wall on which the motion
-    /// rests.
-    prepared: RefCell<Vec<(Vec<f64>, Option<usize>, Rc<ScaledRates>)>>,
+    /// The rates where nothing holds that were prepared before.
+    prepared: RefCell<Vec<PreparedRates>>,
+}
+
+/// Rates where nothing holds, on these sides of the surfaces and on this wall if the motion rests on one.
+struct PreparedRates {
+    sides: Vec<f64>,
+    resting: Option<usize>,
+    rates: Rc<ScaledRates>,
 }
 
 /// Follows a motion from a start, in the sizes of the states, between two times. With a `unit` the
@@ -364,10 +370,10 @@ impl<'a> EventRun<'a> {
     /// The rates where nothing holds, prepared once for all legs on the same sides.
     fn free_rates(&self) -> Rc<ScaledRates> {
         let all = &mut *self.prepared.borrow_mut();
-        let known =
-            all.iter().find(|(sides, rest, _)| (sides, rest) == (&self.sides, &self.resting));
-        if let Some((_, _, known)) = known {
-            return known.clone();
+        let is_known =
+            |known: &&PreparedRates| known.sides == self.sides && known.resting == self.resting;
+        if let Some(known) = all.iter().find(is_known) {
+            return known.rates.clone();
         }
         let rest = self.resting_map();
         let rates = rest.map_or(&self.surfaces.rates, |rest| &rest.rates);
@@ -375,7 +381,8 @@ impl<'a> EventRun<'a> {
         let varied = self.unit.map(|unit| (varied, unit));
         let behind_time = &self.here()[self.surfaces.states + 1..];
         let own = Rc::new(ScaledRates::new(rates, varied, behind_time, self.sizes));
-        all.push((self.sides.clone(), self.resting, own.clone()));
+        let (sides, resting) = (self.sides.clone(), self.resting);
+        all.push(PreparedRates { sides, resting, rates: own.clone() });
         own
     }
 

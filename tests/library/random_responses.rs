@@ -20,7 +20,7 @@ use lindstedt::response::{Branch, ResponseRequest, respond};
 use crate::random::Random;
 
 /// Seeds at which a stable motion was once missing.
-const FOUND: [u64; 7] = [2000059, 2000184, 3000006, 3000054, 5100064, 82000086, 82000148];
+const FOUND: [u64; 8] = [2000059, 2000184, 3000006, 3000054, 5100064, 82000086, 82000148, 92000179];
 
 /// Seeds at which this test was wrong: its steps were too coarse for a short touch of a stop.
 const TOUCHING: [u64; 1] = [81000054];

@@ -175,6 +175,8 @@ impl PreparedRequest<'_> {
         branches: &[BranchPath],
         values: &[f64],
     ) -> Vec<(f64, TrueMotion)> {
+        /// The distance of a motion from its guess, in parts of its size, up to which it is on the branch.
+        const NEAR: f64 = 0.1;
         let guess = |(pair, parameter): (&[BranchNode], f64)| {
             let [one, other] = pair else { return None };
             let part = one.part_of_way(other, parameter)?;
@@ -186,9 +188,14 @@ impl PreparedRequest<'_> {
         let pairs = pairs.flat_map(|pair| values.iter().map(move |value| (pair, *value)));
         let guesses: Vec<MotionGuess> = pairs.filter_map(guess).collect();
         let truths = periodic_motions(&self.driven, &guesses);
+        // Newton's iteration from a guess may lead to a motion that is on no branch.
+        let is_near = |guess: &MotionGuess, truth: &TrueMotion| {
+            let [x, v] = [0, 1].map(|index| truth.start[index] - guess.start[index]);
+            x.hypot(v / truth.frequency) <= NEAR * guess.size
+        };
         let stable = guesses.iter().zip(truths).filter_map(|(guess, truth)| {
             let truth = truth.filter(|truth| truth.floquet.largest() < 1.0)?;
-            Some((guess.parameter, truth))
+            is_near(guess, &truth).then_some((guess.parameter, truth))
         });
         stable.collect()
     }

@@ -101,7 +101,7 @@ impl PowerOfQuotient {
         }
         match times {
             2 => values.iter_mut().for_each(|value| *value *= *value),
-            3 => values.iter_mut().for_each(|value| *value *= *value * *value),
+            3 => values.iter_mut().for_each(|value| *value = *value * *value * *value),
             4 => values.iter_mut().for_each(|value| {
                 *value *= *value;
                 *value *= *value;

@@ -40,8 +40,6 @@ pub(super) struct PrimaryEquations {
     accelerations: &'static Accelerations,
     numbers: BTreeMap<Symbol, f64>,
     case: PrimaryCase,
-    /// Whether the energies are states as well.
-    is_accounted: bool,
     /// The systems of the phases met so far, because a motion repeats the same phases.
     built: RefCell<Vec<(PhaseKey, Rc<PhaseSystem>)>>,
 }
@@ -108,8 +106,7 @@ fn derive() -> Result<Accelerations, MechanicsError> {
 }
 
 impl PrimaryEquations {
-    /// The equations of a case, with those of its energies or without.
-    pub(super) fn new(case: PrimaryCase, is_accounted: bool) -> Result<Self, PrimaryError> {
+    pub(super) fn new(case: PrimaryCase) -> Result<Self, PrimaryError> {
         let accelerations = DERIVED.as_ref().map_err(Clone::clone)?;
         let (primary, model) = (case.primary, case.model);
         let numbers = [
@@ -127,7 +124,6 @@ impl PrimaryEquations {
             accelerations,
             numbers: numbers.map(|(name, value)| (Symbol::new(name), value)).into(),
             case,
-            is_accounted,
             built: RefCell::default(),
         })
     }
@@ -160,9 +156,6 @@ impl PrimaryEquations {
 
     /// Rates of the accounts: viscous, friction, contact, dashpot, force.
     fn accounts(&self, friction: Expr, contact: Expr) -> [Expr; ACCOUNTS] {
-        if !self.is_accounted {
-            return std::array::from_fn(|_| Expr::zero());
-        }
         [parsed("2*zeta*x'^2"), friction, contact, parsed("delta*y'^2"), parsed("f*sin(eta*t)*y'")]
     }
 

@@ -50,22 +50,12 @@ pub fn simulate_primary(
     case: PrimaryCase,
     settings: &PrimarySettings,
 ) -> Result<PrimaryMotion, PrimaryError> {
-    follow_primary(case, settings, true)
-}
-
-/// Follows a motion as [`simulate_primary`] does; where it is not accounted for, its energies are of no use,
-/// and no equations are solved for them.
-pub(super) fn follow_primary(
-    case: PrimaryCase,
-    settings: &PrimarySettings,
-    is_accounted: bool,
-) -> Result<PrimaryMotion, PrimaryError> {
     case.check()?;
     if !(settings.duration > 0.0 && settings.duration.is_finite()) {
         return Err(PrimaryError::Duration(settings.duration));
     }
     let chain = settings.chain.then(|| PrimaryChain::new(&case)).transpose()?;
-    let mut run = PrimaryRun::new(case, settings, is_accounted)?;
+    let mut run = PrimaryRun::new(case, settings)?;
     let stop = loop {
         if run.t >= settings.duration {
             break PrimaryStop::Duration;
@@ -165,18 +155,14 @@ fn offset(name: &str, place: f64) -> Expr {
 }
 
 impl<'a> PrimaryRun<'a> {
-    fn new(
-        case: PrimaryCase,
-        settings: &'a PrimarySettings,
-        is_accounted: bool,
-    ) -> Result<Self, PrimaryError> {
+    fn new(case: PrimaryCase, settings: &'a PrimarySettings) -> Result<Self, PrimaryError> {
         let [x, velocity, y, speed] = case.start;
         let state = PrimaryState { x, velocity, y, speed };
         let energy = case.energy(state);
         let mut run = Self {
             case,
             settings,
-            equations: PrimaryEquations::new(case, is_accounted)?,
+            equations: PrimaryEquations::new(case)?,
             regime: PrimaryRegime::Free(0.0),
             t: 0.0,
             state,

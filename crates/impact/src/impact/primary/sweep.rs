@@ -1,8 +1,10 @@
 //! Many main masses with their pendulums: the amplitude of each in the long run, or its rest time,
 //! with its damper, with the damper locked and without.
 
-use super::follow::follow_primary;
-use super::{Primary, PrimaryCase, PrimaryError, PrimarySettings, PrimaryStop, UndampedAndLocked};
+use super::{
+    Primary, PrimaryCase, PrimaryError, PrimarySettings, PrimaryStop, UndampedAndLocked,
+    simulate_primary,
+};
 use crate::impact::NoRest;
 use crate::parallel::par_map;
 
@@ -79,7 +81,7 @@ pub fn sweep_primary(
 }
 
 fn row(case: PrimaryCase, settings: &PrimarySettings) -> Result<PrimaryRow, PrimaryError> {
-    let motion = follow_primary(case, settings, false)?;
+    let motion = simulate_primary(case, settings)?;
     let since = (1.0 - LAST) * motion.end;
     Ok(PrimaryRow {
         primary: case.primary,

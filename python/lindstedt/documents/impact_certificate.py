@@ -31,14 +31,18 @@ EnclosedNumber.FIELDS = (
 
 @dataclass(frozen=True, eq=False, repr=False)
 class EnclosedNumberOfPhases(Document):
-    """The five numbers of an impact, or their errors.
+    """The numbers of an impact, or their errors.
 
     Attributes:
         time_to_contact: The time from the release to the touch.
         speed: The speed at the touch.
         penetration: The greatest depth in the barrier.
         duration: The time from touch to release.
-        period: The time from release to release.
+        period: The time from release to release; of a contact that loses energy until the motion
+            turns after the impact.
+        restitution: The speed after the contact over that before; left out where the contact
+            loses nothing.
+        speed_out: The speed after the contact; left out where the contact loses nothing.
     """
 
     time_to_contact: EnclosedNumber
@@ -46,6 +50,8 @@ class EnclosedNumberOfPhases(Document):
     penetration: EnclosedNumber
     duration: EnclosedNumber
     period: EnclosedNumber
+    restitution: EnclosedNumber | None
+    speed_out: EnclosedNumber | None
 
 
 EnclosedNumberOfPhases.FIELDS = (
@@ -54,7 +60,10 @@ EnclosedNumberOfPhases.FIELDS = (
     ("penetration", "penetration", EnclosedNumber.from_json),
     ("duration", "duration", EnclosedNumber.from_json),
     ("period", "period", EnclosedNumber.from_json),
+    ("restitution", "restitution", EnclosedNumber.from_json),
+    ("speed_out", "speed_out", EnclosedNumber.from_json),
 )
+EnclosedNumberOfPhases.OPTIONAL = frozenset(['restitution', 'speed_out'])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -78,14 +87,18 @@ ErrorBounds.FIELDS = (
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ErrorBoundsOfPhases(Document):
-    """The five numbers of an impact, or their errors.
+    """The numbers of an impact, or their errors.
 
     Attributes:
         time_to_contact: The time from the release to the touch.
         speed: The speed at the touch.
         penetration: The greatest depth in the barrier.
         duration: The time from touch to release.
-        period: The time from release to release.
+        period: The time from release to release; of a contact that loses energy until the motion
+            turns after the impact.
+        restitution: The speed after the contact over that before; left out where the contact
+            loses nothing.
+        speed_out: The speed after the contact; left out where the contact loses nothing.
     """
 
     time_to_contact: ErrorBounds
@@ -93,6 +106,8 @@ class ErrorBoundsOfPhases(Document):
     penetration: ErrorBounds
     duration: ErrorBounds
     period: ErrorBounds
+    restitution: ErrorBounds | None
+    speed_out: ErrorBounds | None
 
 
 ErrorBoundsOfPhases.FIELDS = (
@@ -101,7 +116,10 @@ ErrorBoundsOfPhases.FIELDS = (
     ("penetration", "penetration", ErrorBounds.from_json),
     ("duration", "duration", ErrorBounds.from_json),
     ("period", "period", ErrorBounds.from_json),
+    ("restitution", "restitution", ErrorBounds.from_json),
+    ("speed_out", "speed_out", ErrorBounds.from_json),
 )
+ErrorBoundsOfPhases.OPTIONAL = frozenset(['restitution', 'speed_out'])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -131,8 +149,8 @@ ProvedClosedForm.FIELDS = (
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ImpactCertificate(Answer):
-    """The numbers of an impact between a pendulum and a barrier of a power law that loses nothing,
-    each enclosed by a proof. Times in units of 1/omega, angles in radians.
+    """The numbers of an impact between a pendulum and a barrier of a power law, each enclosed by a
+    proof. Times in units of 1/omega, angles in radians.
 
     Attributes:
         schema: The kind of document.
@@ -141,6 +159,8 @@ class ImpactCertificate(Answer):
         barrier: The place of the barrier.
         stiffness: The stiffness of the barrier, whose force is `stiffness * depth^exponent`.
         exponent: The exponent of the depth, 3/2 of Hertz's law.
+        damping: The damping of a contact that loses energy, whose force is `stiffness *
+            depth^exponent * (1 + damping * depth')`.
         proved: The enclosed numbers.
         tolerance: The size of the relative error up to which a verdict is `pass`.
         runge_kutta: The relative errors of Runge-Kutta.
@@ -153,6 +173,7 @@ class ImpactCertificate(Answer):
     barrier: Constant
     stiffness: Constant
     exponent: Constant
+    damping: Constant | None
     proved: EnclosedNumberOfPhases
     tolerance: float
     runge_kutta: ErrorBoundsOfPhases
@@ -166,8 +187,10 @@ ImpactCertificate.FIELDS = (
     ("barrier", "barrier", Constant.from_json),
     ("stiffness", "stiffness", Constant.from_json),
     ("exponent", "exponent", Constant.from_json),
+    ("damping", "damping", Constant.from_json),
     ("proved", "proved", EnclosedNumberOfPhases.from_json),
     ("tolerance", "tolerance", None),
     ("runge_kutta", "runge_kutta", ErrorBoundsOfPhases.from_json),
     ("closed_forms", "closed_forms", several(ProvedClosedForm.from_json)),
 )
+ImpactCertificate.OPTIONAL = frozenset(['damping'])

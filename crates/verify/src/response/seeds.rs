@@ -118,8 +118,8 @@ impl PreparedRequest<'_> {
             found.size = extents.fold(found.size, f64::max);
         }
         if !self.driven.undamped {
-            found.stable = self.stable_on(&balance, &branches, &around);
             let before = found.motions.seeds.len();
+            self.begin_round(&balance, &branches, &around, &mut found);
             self.search_around(&around, 0, found.size, &mut found);
             // Motions at the added values are far smaller, or larger, than those at others.
             for value in &added {
@@ -161,22 +161,25 @@ impl PreparedRequest<'_> {
             if branches.len() == known {
                 return;
             }
-            found.stable = self.stable_on(balance, branches, values);
             before = found.motions.seeds.len();
+            self.begin_round(balance, branches, values, found);
             self.question.progress.begin(values.len() * RADII.len() * self.speeds_of_starts());
             self.search_around(values, round, found.size, found);
         }
     }
 
-    /// The stable motions on these branches at values of the parameter, each with its value.
+    /// The stable motions on these branches at values of the parameter, each with its value; and others to which
+    /// iterations from these branches led.
     fn stable_on(
         &self,
         balance: &DrivenBalance,
         branches: &[BranchPath],
         values: &[f64],
-    ) -> Vec<(f64, TrueMotion)> {
+    ) -> (Vec<(f64, TrueMotion)>, Vec<(f64, TrueMotion)>) {
         /// The distance of a motion from its guess, in parts of its size, up to which it is on the branch.
         const NEAR: f64 = 0.1;
+        /// Relative distance of motions that are one.
+        const SAME: f64 = 1e-6;
         let guess = |(pair, parameter): (&[BranchNode], f64)| {
             let [one, other] = pair else { return None };
             let part = one.part_of_way(other, parameter)?;
@@ -193,11 +196,41 @@ impl PreparedRequest<'_> {
             let [x, v] = [0, 1].map(|index| truth.start[index] - guess.start[index]);
             x.hypot(v / truth.frequency) <= NEAR * guess.size
         };
-        let stable = guesses.iter().zip(truths).filter_map(|(guess, truth)| {
-            let truth = truth.filter(|truth| truth.floquet.largest() < 1.0)?;
-            is_near(guess, &truth).then_some((guess.parameter, truth))
-        });
-        stable.collect()
+        let mut stable = vec![];
+        let mut strayed: Vec<(f64, TrueMotion)> = vec![];
+        for (guess, truth) in guesses.iter().zip(truths) {
+            let Some(truth) = truth.filter(|truth| truth.floquet.largest() < 1.0) else { continue };
+            let is_same = |(parameter, known): &(f64, TrueMotion)| {
+                let apart = [0, 1].map(|index| (known.start[index] - truth.start[index]).abs());
+                *parameter == guess.parameter && apart[0].max(apart[1]) <= SAME * truth.peak
+            };
+            if is_near(guess, &truth) {
+                stable.push((guess.parameter, truth));
+            } else if !strayed.iter().any(is_same) {
+                strayed.push((guess.parameter, truth));
+            }
+        }
+        (stable, strayed)
+    }
+
+    /// Takes the stable motions of branches for known, and those to which iterations strayed for new ones.
+    fn begin_round(
+        &self,
+        balance: &DrivenBalance,
+        branches: &[BranchPath],
+        values: &[f64],
+        found: &mut Search,
+    ) {
+        let (stable, strayed) = self.stable_on(balance, branches, values);
+        found.stable = stable;
+        let begin = |(parameter, motion): &(f64, TrueMotion)| PlannedSimulation {
+            seed: None,
+            start: motion.start,
+            parameter: *parameter,
+        };
+        let planned: Vec<PlannedSimulation> = strayed.iter().map(begin).collect();
+        self.add_settled(&planned, found);
+        found.stable.extend(strayed);
     }
 
     /// The distances between the values of the parameter at which the search begins.

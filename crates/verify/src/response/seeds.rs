@@ -175,7 +175,7 @@ impl PreparedRequest<'_> {
         balance: &DrivenBalance,
         branches: &[BranchPath],
         values: &[f64],
-    ) -> (Vec<(f64, TrueMotion)>, Vec<(f64, TrueMotion)>) {
+    ) -> [Vec<(f64, TrueMotion)>; 2] {
         /// The distance of a motion from its guess, in parts of its size, up to which it is on the branch.
         const NEAR: f64 = 0.1;
         /// Relative distance of motions that are one.
@@ -210,7 +210,7 @@ impl PreparedRequest<'_> {
                 strayed.push((guess.parameter, truth));
             }
         }
-        (stable, strayed)
+        [stable, strayed]
     }
 
     /// Takes the stable motions of branches for known, and those to which iterations strayed for new ones.
@@ -221,7 +221,7 @@ impl PreparedRequest<'_> {
         values: &[f64],
         found: &mut Search,
     ) {
-        let (stable, strayed) = self.stable_on(balance, branches, values);
+        let [stable, strayed] = self.stable_on(balance, branches, values);
         found.stable = stable;
         let begin = |(parameter, motion): &(f64, TrueMotion)| PlannedSimulation {
             seed: None,

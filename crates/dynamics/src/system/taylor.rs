@@ -243,9 +243,9 @@ pub(super) struct RunMemory {
     root_signs: Vec<f64>,
     /// All recurrences of the equations.
     expansions: Expansions,
-    /// Those for these signs.
+    /// The recurrences for these signs.
     expansion: SystemSeries,
-    /// Those for other signs, which the motion has left.
+    /// The recurrences for other signs, which the motion has left.
     left: Vec<(Vec<f64>, SystemSeries)>,
     /// The states, then the variables of the roots that act.
     values: Vec<f64>,

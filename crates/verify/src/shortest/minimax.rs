@@ -125,12 +125,7 @@ impl QuotientOfSums<'_> {
 
     /// The number of places.
     pub(super) fn places(&self) -> usize {
-        self.numerator
-            .iter()
-            .chain(&self.denominator)
-            .map(|values| values.len())
-            .next()
-            .unwrap_or(0)
+        self.numerator.first().or(self.denominator.first()).map_or(0, |values| values.len())
     }
 
     /// The largest error with these constants; infinite where the denominator changes its sign, or the

@@ -79,7 +79,7 @@ fn sign(ball: &Ball) -> Sign {
 struct Step {
     /// The polynomials of the states in u, the part of the step.
     series: States<Vec<Ball>>,
-    /// What the polynomials leave out.
+    /// The remainders beyond the polynomials.
     remainders: States<Bound>,
     /// The signs of v and of dv/ds on the whole step.
     signs: [Sign; 2],

@@ -17,7 +17,7 @@ use super::super::elementary::Analytic as _;
 use super::super::force::{along, along_all, is_odd};
 use super::super::fourier_series::{FourierSeries, WORKING};
 use super::contact::{self, ContactMean};
-use super::jet::{Jet, widened};
+use super::jet::{DIGITS, Jet, widened};
 use super::{LawNotProved, StartOfLaw};
 use crate::conservative::CentredForce;
 use crate::exact::ball::Ball;
@@ -644,9 +644,6 @@ fn interpolated(nodes: &[Rational], mut values: Vec<Ball>) -> Vec<Ball> {
     }
     coefficients
 }
-
-/// Binary digits of the series, whose errors need only be small beside the error of a law.
-const DIGITS: usize = 48;
 
 /// `r G` of the series of a force along `m + r cos(theta)`.
 fn mean_rate(force: &FourierSeries) -> FourierSeries {

@@ -191,7 +191,7 @@ impl Variable<FourierSeries> {
 }
 
 /// Binary digits of the series, whose errors need only be small beside the error of a law.
-const DIGITS: usize = 48;
+pub(super) const DIGITS: usize = 48;
 
 /// The numbers from one to another as a series of Chebyshev.
 pub(super) fn line(from: &Rational, to: &Rational) -> FourierSeries {

@@ -14,7 +14,7 @@ use crate::response::bifurcation::BifurcationKind;
 use crate::response::continuation::BranchEnd;
 use crate::response::slow::{SlowEquations, SlowResponse};
 use crate::response::{
-    Branch, Elsewhere, MOST_HARMONICS, MOST_IMPACTS, ResponseDiagram, SteadyMotion,
+    AperiodicMotion, Branch, Elsewhere, MOST_HARMONICS, MOST_IMPACTS, ResponseDiagram, SteadyMotion,
 };
 use crate::solution::Solution;
 use crate::symbol::Symbol;
@@ -761,48 +761,74 @@ fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
         )));
     }
     blocks.extend(sparse(response));
-    let mut kinds: Vec<(Option<usize>, Option<usize>)> =
-        response.elsewhere.iter().map(|place| (place.periods, place.drive_periods)).collect();
-    kinds.sort();
-    kinds.dedup();
-    for (count, drive_periods) in kinds {
-        let places = response
-            .elsewhere
-            .iter()
-            .filter(|place| (place.periods, place.drive_periods) == (count, drive_periods));
-        let places: Vec<&Elsewhere> = places.collect();
+    let kind = |place: &Elsewhere| {
+        (place.periods, place.drive_periods, place.aperiodic.as_ref().map(std::mem::discriminant))
+    };
+    let mut sorted: Vec<&Elsewhere> = response.elsewhere.iter().collect();
+    sorted.sort_by_key(|place| (place.periods, place.drive_periods));
+    let mut kinds: Vec<Vec<&Elsewhere>> = Vec::new();
+    for place in sorted {
+        match kinds.iter_mut().find(|places| kind(places[0]) == kind(place)) {
+            Some(places) => places.push(place),
+            None => kinds.push(vec![place]),
+        }
+    }
+    for places in kinds {
         let mut values: Vec<String> =
             places.iter().map(|place| significant(place.parameter, 4)).collect();
         values.dedup();
-        let mut largest: Vec<&Elsewhere> = places.clone();
-        largest.sort_by(|one, other| other.peak.total_cmp(&one.peak));
-        let example = largest.first().map_or_else(String::new, |place| {
-            format!(
-                " The largest has the peak {} at {name} = {} and begins at {}.",
-                significant(place.peak, 4),
-                significant(place.parameter, 4),
-                coupled::states_in_words(response, place)
-            )
-        });
-        let places = values.join(", ");
-        blocks.push(Block::Sentence(match count {
-            Some(1) => format!(
-                "At {name} = {places} a simulation settles on a motion that lies on none of these branches: {} has not come to it. {} may \
-                 find its branch.{example}",
-                method(response),
-                match response.by_map || response.harmonics >= MOST_HARMONICS {
-                    true => "Another range".to_owned(),
-                    false => format!("More harmonics, {MOST_HARMONICS} at most, or another range"),
-                }
+        let largest = places.iter().max_by(|one, other| one.peak.total_cmp(&other.peak));
+        let Some(largest) = largest else { continue };
+        let sentence = settles_elsewhere(response, largest);
+        let own = match largest.aperiodic {
+            Some(AperiodicMotion::QuasiPeriodic(motion)) => {
+                format!(", the second frequency {},", significant(motion.second_frequency, 6))
+            }
+            Some(AperiodicMotion::Chaotic(motion)) => format!(
+                ", the Lyapunov exponent {} +- {},",
+                significant(motion.lyapunov_exponent, 3),
+                significant(motion.lyapunov_error, 1)
             ),
-            Some(count) => format!(
-                "At {name} = {places} a simulation settles on a motion of {} periods of the drive, which is not among these branches.{example}",
-                drive_periods.unwrap_or(count * response.question.periods)
-            ),
-            None => format!(
-                "At {name} = {places} a simulation does not come to repeat itself.{example}"
-            ),
-        }));
+            Some(AperiodicMotion::Unsettled(..)) | None => String::new(),
+        };
+        blocks.push(Block::Sentence(format!(
+            "At {name} = {} a simulation {sentence} The largest has the peak {} at {name} = {}{own} and begins at {}.",
+            values.join(", "),
+            significant(largest.peak, 4),
+            significant(largest.parameter, 4),
+            coupled::states_in_words(response, largest)
+        )));
     }
     blocks
+}
+
+/// The end of a sentence that says on what a simulation settles that is on no branch.
+fn settles_elsewhere(response: &ResponseDiagram, place: &Elsewhere) -> String {
+    let periods = response.question.periods;
+    match (place.periods, place.aperiodic) {
+        (Some(1), _) => format!(
+            "settles on a motion that lies on none of these branches: {} has not come to it. {} may find its branch.",
+            method(response),
+            match response.by_map || response.harmonics >= MOST_HARMONICS {
+                true => "Another range".to_owned(),
+                false => format!("More harmonics, {MOST_HARMONICS} at most, or another range"),
+            }
+        ),
+        (Some(count), _) => format!(
+            "settles on a motion of {} periods of the drive, which is not among these branches.",
+            place.drive_periods.unwrap_or(count * periods)
+        ),
+        (None, Some(AperiodicMotion::QuasiPeriodic(..))) => {
+            "settles on a quasi-periodic motion, with a second frequency beside that of the drive."
+                .to_owned()
+        }
+        (None, Some(AperiodicMotion::Chaotic(..))) => {
+            "goes on in chaos: motions nearby part from it.".to_owned()
+        }
+        (None, Some(AperiodicMotion::Unsettled(motion))) => format!(
+            "has not settled in time: {} more periods of the drive show no other period, no second frequency and no chaos.",
+            motion.followed_periods * periods
+        ),
+        (None, None) => "does not come to repeat itself.".to_owned(),
+    }
 }

@@ -27,6 +27,7 @@
 //!   [`hopf`]: the Hopf point at which it begins.
 //!
 //! - [`coupled`]: coupled equations of any number of coordinates, by shooting.
+//! - `aperiodic`: how motions go on that do not repeat themselves.
 //! - `coverage`: the distances between the values at which a search begins.
 //! - `seeds`: the motions from which branches start; `one_harmonic` and `melnikov`: guesses of motions
 //!   of every size; `narrow`: bifurcations between two points of a branch.
@@ -36,6 +37,7 @@
 //! where others cross. So closed and disconnected branches are found as well. Limit cycles are found
 //! by the return map of their turning points, forward and backward in time.
 
+mod aperiodic;
 pub mod backbone;
 pub mod balance;
 pub mod bifurcation;
@@ -81,6 +83,7 @@ use crate::values::Values;
 use crate::verify::Verdict;
 use crate::wall::Wall;
 
+pub use aperiodic::{AperiodicMotion, ChaoticMotion, QuasiPeriodicMotion, UnsettledMotion};
 pub use equations::{Equations, EquationsError};
 pub use error::{ResponseError, SeedSearch};
 pub use ripple::Ripple;
@@ -368,7 +371,7 @@ pub struct Elsewhere {
     /// The value of the parameter that varies.
     pub parameter: f64,
     /// After how many periods of the motion it repeats itself, 1 where harmonic balance has not
-    /// come to it; null where it does not within eight.
+    /// come to it; null where it does not.
     pub periods: Option<usize>,
     /// After how many periods of the drive it repeats itself; null where it does not.
     pub drive_periods: Option<usize>,
@@ -383,6 +386,9 @@ pub struct Elsewhere {
     pub amplitude: f64,
     /// Half of the way from the lowest to the highest point of this period.
     pub peak: f64,
+    /// How it goes on where it does not repeat itself; left out where it does, and where it cannot be followed.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub aperiodic: Option<AperiodicMotion>,
 }
 
 impl Elsewhere {

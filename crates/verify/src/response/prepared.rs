@@ -80,6 +80,7 @@ impl<'a> PreparedRequest<'a> {
         let mut response = self.attempt(MOST_HARMONICS, &seeds, &branches)?.with_sparse(gaps);
         response.elsewhere.extend(elsewhere);
         Elsewhere::sort(&mut response.elsewhere);
+        self.follow_further(&mut response.elsewhere);
         Ok(response)
     }
 
@@ -137,6 +138,7 @@ impl<'a> PreparedRequest<'a> {
             if last {
                 response.elsewhere.extend(elsewhere);
                 Elsewhere::sort(&mut response.elsewhere);
+                self.follow_further(&mut response.elsewhere);
                 let response = response.with_sparse(gaps);
                 return match response.self_excited {
                     true => self.without_tails(response),

@@ -1,15 +1,18 @@
-//! Motions on which simulations have settled and that lie on no branch.
+//! Motions on which simulations have settled and that lie on no branch, or have not settled.
 //!
 //! In: the branches, and the initial motions. Out: the initial motions whose true motion, by
 //! shooting, is not found by shooting from any branch: harmonic balance has not converged to it, or
 //! has converged to another one.
 
+use super::aperiodic::{LaterMotion, PeriodSamples, SAMPLES};
 use super::balance::DrivenBalance;
 use super::continuation::{BranchNode, BranchPath};
-use super::jump::{StopCondition, follow};
+use super::driven::TimedStart;
+use super::jump::{StopCondition, follow, positions_on};
 use super::seeds::Seed;
 use super::stability::{
-    MotionGuess, TOLERANCE, TrueMotion, options, periodic_motion, periodic_motions,
+    self, MotionGuess, TOLERANCE, TrueMotion, first_harmonic, half_of_peak_to_peak, options,
+    periodic_motion, periodic_motions,
 };
 use super::{Elsewhere, LONGEST_STEP, PreparedRequest};
 
@@ -106,7 +109,52 @@ impl PreparedRequest<'_> {
             fewer.find(|count| returns(*count)).unwrap_or(all)
         });
         let amplitude = cosine.hypot(sine);
-        Elsewhere { parameter, periods, drive_periods, start, state: vec![], amplitude, peak }
+        Elsewhere {
+            parameter,
+            periods,
+            drive_periods,
+            start,
+            state: vec![],
+            amplitude,
+            peak,
+            aperiodic: None,
+        }
+    }
+
+    /// Follows the motions further that do not repeat themselves, and says how they go on.
+    pub(super) fn follow_further(&self, elsewhere: &mut Vec<Elsewhere>) {
+        for place in elsewhere.iter_mut().filter(|place| place.periods.is_none()) {
+            let parameter = place.parameter;
+            let omega = self.driven.frequency_at(parameter);
+            let settings = options(place.peak, TOLERANCE);
+            let samples = |state: &[f64], count: usize| {
+                if self.question.interrupt.is_requested() {
+                    return None;
+                }
+                let (start, duration) = (state.try_into().ok()?, std::f64::consts::TAU / omega);
+                let motion = TimedStart { start, begin: 0.0, parameter, duration };
+                if let Some(path) = self.driven.by_series(&[motion]).pop().flatten() {
+                    let end = path.states_at(path.end())?;
+                    return Some(PeriodSamples { positions: positions_on(&path, count), end });
+                }
+                let time = StopCondition::Time(duration);
+                let path = follow(&self.driven, start, parameter, time, &settings)?;
+                let end = path.end[..2].to_vec();
+                Some(PeriodSamples { positions: path.positions(count), end })
+            };
+            match LaterMotion::of(&place.start, omega, |state| samples(state, SAMPLES)) {
+                Some(LaterMotion::Aperiodic(motion)) => place.aperiodic = Some(motion),
+                Some(LaterMotion::Periodic(count, state)) => {
+                    let Some(period) = samples(&state, stability::SAMPLES) else { continue };
+                    let Ok(start) = state.try_into() else { continue };
+                    let wave = first_harmonic(&period.positions);
+                    let peak = half_of_peak_to_peak(&period.positions);
+                    *place = self.elsewhere((start, parameter), Some(count), wave, peak);
+                }
+                None => {}
+            }
+        }
+        Elsewhere::sort(elsewhere);
     }
 
     /// The starts of a motion, of its shifts by drive periods, and of their mirror images.

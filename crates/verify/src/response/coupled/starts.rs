@@ -11,6 +11,7 @@ use super::branches::{Known, Start};
 use super::flow::Flow;
 use super::problem::{CoupledProblem, Orbit};
 use super::sliding::SlidingStop;
+use crate::response::aperiodic::{LaterMotion, PeriodSamples, SAMPLES};
 use crate::response::{Elsewhere, ResponseDiagram, ResponseError, SeedSearch, Simulated};
 
 /// The extent of the search.
@@ -252,6 +253,7 @@ impl CoupledProblem<'_> {
             }
         }
         Elsewhere::sort(&mut elsewhere);
+        self.follow_further(&mut elsewhere, &known.scale);
         simulated.dedup_by(|one, other| {
             one.parameter == other.parameter && (one.peak / other.peak - 1.0).abs() < 1e-3
         });
@@ -364,7 +366,37 @@ impl CoupledProblem<'_> {
             state: start.unknowns.clone(),
             amplitude: cosine.hypot(sine),
             peak: 0.5 * (high - low),
+            aperiodic: None,
         })
+    }
+
+    /// Follows the motions further that do not repeat themselves, and says how they go on.
+    fn follow_further(&self, elsewhere: &mut Vec<Elsewhere>, scale: &[f64]) {
+        for place in elsewhere.iter_mut().filter(|place| place.periods.is_none()) {
+            let parameter = place.parameter;
+            let samples = |state: &[f64]| {
+                let mut positions = Vec::with_capacity(SAMPLES);
+                let mut end = state.to_vec();
+                for part in 0..SAMPLES {
+                    if self.is_exhausted() || self.question.interrupt.is_requested() {
+                        return None;
+                    }
+                    positions.push(self.shown.call(&end[..self.coordinates]));
+                    let phases = [part, part + 1].map(|part| TAU * part as f64 / SAMPLES as f64);
+                    end = self.after(&end, phases, parameter, scale)?;
+                }
+                Some(PeriodSamples { positions, end })
+            };
+            match LaterMotion::of(&place.state, self.frequency_at(parameter), samples) {
+                Some(LaterMotion::Aperiodic(motion)) => place.aperiodic = Some(motion),
+                Some(LaterMotion::Periodic(count, unknowns)) => {
+                    let start = Start { parameter, unknowns, section: 0.0 };
+                    *place = self.elsewhere(&start, Some(count)).unwrap_or_else(|| place.clone());
+                }
+                None => {}
+            }
+        }
+        Elsewhere::sort(elsewhere);
     }
 }
 

@@ -14,7 +14,8 @@ use crate::response::bifurcation::BifurcationKind;
 use crate::response::continuation::BranchEnd;
 use crate::response::slow::{SlowEquations, SlowResponse};
 use crate::response::{
-    AperiodicMotion, Branch, Elsewhere, MOST_HARMONICS, MOST_IMPACTS, ResponseDiagram, SteadyMotion,
+    AperiodicMotion, Branch, Elsewhere, Equations, MOST_HARMONICS, MOST_IMPACTS, ResponseDiagram,
+    SteadyMotion,
 };
 use crate::solution::Solution;
 use crate::symbol::Symbol;
@@ -296,6 +297,14 @@ fn end_in_words(
                 "It grazes {place_of_event} at {place}: beyond, a period has an {event} less or more, and the map of a period has a root there{followed}."
             )
         }
+        BranchEnd::Sensitive => format!(
+            "It was followed no farther than {place}, where its period is {} and a disturbance grows about ten thousandfold in it: it may \
+             pass slowly by a place of rest there, as near a homoclinic orbit.",
+            significant(std::f64::consts::TAU / point.frequency, 4)
+        ),
+        BranchEnd::Lost if is_smooth(response) => format!(
+            "It could not be followed beyond {place}: no step leads on there, however small."
+        ),
         BranchEnd::Lost if response.jumps => format!(
             "It could not be followed beyond {place}: the motion begins to touch a jump of the force there, or the force has no value."
         ),
@@ -317,6 +326,18 @@ fn end_in_words(
             return None;
         }
     })
+}
+
+/// Whether the forces have values and all derivatives everywhere, and nothing sets a state to another value.
+fn is_smooth(response: &ResponseDiagram) -> bool {
+    let question = &response.question;
+    let forces = match &question.equations {
+        Equations::One(oscillator) => std::slice::from_ref(&oscillator.force),
+        Equations::Coupled(equations) => &equations.rates.right,
+    };
+    question.walls.is_empty()
+        && question.events.is_empty()
+        && forces.iter().all(Expr::is_smooth_everywhere)
 }
 
 /// The words for a jump of states, and for the place where it happens.

@@ -1,10 +1,13 @@
 //! Steady states of coupled equations, held to closed forms, to published cases with values computed
 //! by other programs, and to motions integrated here.
 
+use lindstedt::Verdict;
 use lindstedt::numeric::ode::{IntegrationOptions, Point, integrate_first_order};
 use lindstedt::response::bifurcation::BifurcationKind;
+use lindstedt::response::continuation::BranchEnd;
 use lindstedt::response::{
-    Criticality, Equations, ResponseDiagram, ResponseRequest, SteadyMotion, respond,
+    Criticality, Equations, EquilibriumChange, ResponseDiagram, ResponseRequest, SteadyMotion,
+    respond,
 };
 
 fn question(equations: &str, parameter: &str, range: [f64; 2], values: &str) -> ResponseRequest {
@@ -619,4 +622,35 @@ fn nothing_is_said_of_a_torus_on_a_corner() {
     let found = answer(text, "mu", [-0.1, 0.1], "");
     near(&places(&found, BifurcationKind::NeimarkSacker), &[0.0], 1e-4);
     assert_eq!(criticalities(&found, BifurcationKind::NeimarkSacker), [None]);
+}
+
+/// Of the equations of E. N. Lorenz (*J. Atmos. Sci.* 20 (1963) 130) with s = 10, b = 8/3: a pitchfork at r = 1, Hopf
+/// points at s (s + b + 3)/(s - b - 1) = 470/19, and subcritical cycles from there down to the homoclinic orbit of the
+/// origin at r = 13.9266 (C. Sparrow, *The Lorenz Equations*, Springer 1982), beside which the branch ends.
+#[test]
+fn lorenz_cycles_end_beside_the_homoclinic_orbit() {
+    let text = "x' = 10*(y - x); y' = x*(r - z) - y; z' = x*y - 8*z/3";
+    let found = respond(&question(text, "r", [0.5, 26.0], "")).expect("branches");
+    let [zero, others] = &found.equilibria[..] else { panic!("{:?}", found.equilibria) };
+    assert!(zero.points.iter().all(|point| point.value == 0.0));
+    for point in &others.points {
+        let square = 8.0 / 3.0 * (point.parameter - 1.0);
+        assert!((point.value * point.value - square).abs() < 1e-7, "{point:?}");
+    }
+    let at_hopf = |change: &&EquilibriumChange| change.kind == BifurcationKind::Hopf;
+    let hopf: Vec<_> = others.changes.iter().filter(at_hopf).collect();
+    assert!(
+        hopf.len() == 2 && hopf.iter().all(|hopf| (hopf.parameter - 470.0 / 19.0).abs() < 1e-8)
+    );
+    assert!(hopf.iter().all(|hopf| hopf.criticality == Some(Criticality::Subcritical)));
+    let from_hopf = found.branches.iter().find(|branch| {
+        branch.points.iter().any(|point| (point.parameter - 470.0 / 19.0).abs() < 1e-3)
+    });
+    let from_hopf = from_hopf.expect("cycles");
+    let last = from_hopf.points.iter().map(|point| point.parameter).fold(f64::MAX, f64::min);
+    assert!((13.9266..13.95).contains(&last), "{last}");
+    assert!(found.bifurcations.is_empty(), "{:?}", found.bifurcations);
+    assert!(from_hopf.ends.contains(&BranchEnd::Sensitive), "{:?}", from_hopf.ends);
+    assert!(found.branches.iter().all(|branch| !branch.ends.contains(&BranchEnd::Lost)));
+    assert_eq!(found.verdict, Verdict::Pass);
 }

@@ -376,6 +376,46 @@ impl Expr {
             .any(|expr| matches!(expr.node(), Node::Function(found, _) if found.has_corner()))
     }
 
+    /// Whether the expression has a value and all derivatives wherever its symbols have values: it is made of sums,
+    /// products and whole positive powers, and of functions without a corner, a pole or an end of their domain.
+    ///
+    /// ```
+    /// # use lindstedt_expr as lindstedt;
+    /// use lindstedt::Expr;
+    ///
+    /// assert!("x^3 - 2*sin(t)".parse::<Expr>()?.is_smooth_everywhere());
+    /// assert!(!"x/(1 - x)".parse::<Expr>()?.is_smooth_everywhere());
+    /// assert!(!"max(x, 0)".parse::<Expr>()?.is_smooth_everywhere());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn is_smooth_everywhere(&self) -> bool {
+        use Function::{
+            Asinh, Atan, BesselI0, BesselI1, BesselJ0, BesselJ1, Cos, Cosh, Exp, Sin, Sinh, Tanh,
+        };
+        self.unique_nodes().all(|expr| match expr.node() {
+            Node::Number(_) | Node::Pi | Node::Symbol(_) | Node::Sum(_) | Node::Product(..) => true,
+            Node::Power(base, exponent) => match (base.node(), exponent.node()) {
+                (Node::Number(_) | Node::Pi, _) => true,
+                (_, Node::Number(exponent)) => exponent.is_integer() && exponent.is_positive(),
+                _ => false,
+            },
+            Node::Function(function, _) => matches!(
+                function,
+                Sin | Cos
+                    | Sinh
+                    | Cosh
+                    | Tanh
+                    | Atan
+                    | Asinh
+                    | Exp
+                    | BesselJ0
+                    | BesselJ1
+                    | BesselI0
+                    | BesselI1
+            ),
+        })
+    }
+
     /// Computes a value for the whole tree from the bottom up: `step` gets each node with the
     /// values of its children. The walk does not recurse, and visits a node that occurs in several
     /// places once.

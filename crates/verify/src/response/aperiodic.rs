@@ -118,7 +118,7 @@ impl LaterMotion {
         /// Powers of e by which motions nearby part at least; across a quasi-periodic motion they part in
         /// proportion to the time, which is less.
         const LEAST: f64 = 12.0;
-        let is_chaotic = exponent > 4.0 * error && exponent * time * PERIODS as f64 > LEAST;
+        let is_chaotic = exponent > 2.0 * error && exponent * time * PERIODS as f64 > LEAST;
         let chaotic = ChaoticMotion { lyapunov_exponent: exponent, lyapunov_error: error };
         let chaotic = Self::Aperiodic(AperiodicMotion::Chaotic(chaotic));
         Some(if is_chaotic { chaotic } else { unsettled })

@@ -100,6 +100,9 @@ pub enum BranchEnd {
     /// Its period grows without bound: a self-excited motion approaches an equilibrium, as at a
     /// homoclinic orbit.
     Slow,
+    /// Disturbances grow ten thousandfold in a period: a self-excited motion passes slowly by an
+    /// equilibrium, as near a homoclinic orbit, or along what repels it.
+    Sensitive,
     /// The computation was interrupted.
     Interrupted,
 }

@@ -94,6 +94,10 @@ impl Known {
 /// ones.
 type Images = [Vec<Vec<f64>>; 2];
 
+/// The factor of growth in a period beyond which no branch of self-excited motions is followed: a single shot, with
+/// its errors so much enlarged, does not tell the other multipliers.
+const MOST_GROWTH: f64 = 1e4;
+
 impl CoupledProblem<'_> {
     /// Whether no more branches are followed.
     pub(super) fn is_done(&self, known: &Known) -> bool {
@@ -383,6 +387,7 @@ impl CoupledProblem<'_> {
         let refused = |orbit: &Orbit| {
             let extent = extent(&orbit.kept.travel);
             self.is_at_rest(orbit)
+                || self.growth_in_period(orbit) > MOST_GROWTH
                 || self.creeps(orbit)
                 || extent > bound
                 || is_cycle && extent < least
@@ -410,6 +415,12 @@ impl CoupledProblem<'_> {
             OrbitBranchEnd::Refused if self.is_exhausted() => BranchEnd::Points,
             OrbitBranchEnd::Refused if self.rests.get() => BranchEnd::Held,
             OrbitBranchEnd::Refused
+                if last[side]
+                    .is_some_and(|point| self.growth_in_period(point) > 0.1 * MOST_GROWTH) =>
+            {
+                BranchEnd::Sensitive
+            }
+            OrbitBranchEnd::Refused
                 if last[side].is_some_and(|point| !point.kept.encounters.places.is_empty()) =>
             {
                 BranchEnd::Lost
@@ -421,6 +432,17 @@ impl CoupledProblem<'_> {
             OrbitBranchEnd::Interrupted => BranchEnd::Interrupted,
         });
         OrbitBranch { orbits: points, ends, mirrored: false, anchor }
+    }
+
+    /// The factor by which a disturbance of a self-excited motion grows in a period, 0 if it is not known; of other
+    /// motions it does not end a branch.
+    fn growth_in_period(&self, orbit: &Orbit) -> f64 {
+        match self.kind {
+            Kind::SelfExcited => self.multipliers(orbit).map_or(0.0, |all| {
+                all.iter().map(|multiplier| multiplier.norm()).fold(0.0, f64::max)
+            }),
+            Kind::Driven(_) | Kind::Free => 0.0,
+        }
     }
 
     /// Whether something that friction holds but for a moment is pushed on in it, a little each period: at
@@ -557,7 +579,8 @@ impl CoupledProblem<'_> {
 
     /// Adds a branch through an orbit of free motions or cycles, unless it is known.
     pub(super) fn add_branch(&self, orbit: Orbit, anchor: Anchor, known: &mut Known) {
-        if self.is_done(known) || self.is_known(&orbit, known) {
+        let is_sensitive = self.growth_in_period(&orbit) > MOST_GROWTH;
+        if is_sensitive || self.is_done(known) || self.is_known(&orbit, known) {
             return;
         }
         self.push_branch(orbit, anchor, known);

@@ -43,6 +43,9 @@ const SEARCH: [usize; 2] = [5, 12];
 /// Largest number of branches.
 const MOST: usize = 16;
 
+/// The part of the largest value below which one is zero but for rounding.
+const ROUNDING: f64 = 1e-12;
+
 impl CoupledProblem<'_> {
     /// The eigenvalues of the linear equations at a state.
     pub(super) fn growth(&self, state: &[f64], parameter: f64) -> Option<Vec<Complex<f64>>> {
@@ -99,8 +102,13 @@ impl CoupledProblem<'_> {
             })
         };
         let add = |rest: Rest, branches: &mut Vec<Vec<Rest>>| {
-            if branches.len() < MOST && !is_known(&rest, branches) {
-                branches.push(equations.branch_through(rest, &limits, &|_| false).0);
+            if branches.len() >= MOST || is_known(&rest, branches) {
+                return;
+            }
+            let branch = equations.branch_through(rest, &limits, &|_| false).0;
+            // Beside a crossing near an end of the range it may begin beyond that end.
+            if !is_known(&branch[branch.len() / 2], branches) {
+                branches.push(branch);
             }
         };
         let [values, starts] = SEARCH;
@@ -155,6 +163,10 @@ impl CoupledProblem<'_> {
                 (&other.unknowns - &rest.unknowns).component_div(&sizes(rest)).norm() < 1e-3
             })
         };
+        let value = |rest: &Rest| {
+            let value = self.shown.call(&rest.start()[..self.coordinates]);
+            if value.abs() < ROUNDING * ordinary.get() { 0.0 } else { value }
+        };
         let described = branches.iter().enumerate().map(|(index, branch)| {
             let mut changes = Vec::new();
             for pair in branch.windows(2) {
@@ -163,7 +175,7 @@ impl CoupledProblem<'_> {
                     changes.push(EquilibriumChange {
                         kind,
                         parameter: at.parameter(),
-                        value: self.shown.call(&at.start()[..self.coordinates]),
+                        value: value(at),
                         criticality: None,
                     });
                 };
@@ -196,7 +208,7 @@ impl CoupledProblem<'_> {
                     growth.map(|all| all.iter().map(|value| value.re).fold(f64::MIN, f64::max));
                 Equilibrium {
                     parameter: rest.parameter(),
-                    value: self.shown.call(&rest.start()[..self.coordinates]),
+                    value: value(rest),
                     state: rest.start().to_vec(),
                     error: step
                         .map(|step| step.amax() / ordinary.get())

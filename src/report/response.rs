@@ -87,10 +87,7 @@ fn question(response: &ResponseDiagram) -> Vec<Block<'static>> {
         method(response),
         response.harmonics,
         phase(response),
-        match asked.periods {
-            1 => "one period".to_owned(),
-            periods => format!("{periods} periods"),
-        }
+        periods_in_words(asked.periods)
     )));
     blocks.push(Block::Sentence(format!(
         "amplitude: of the first harmonic, amplitude*cos(theta - phase); peak: half of peak to peak; {}.",
@@ -810,6 +807,11 @@ fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
                 significant(motion.lyapunov_exponent, 3),
                 significant(motion.lyapunov_error, 1)
             ),
+            Some(AperiodicMotion::Rotating(motion)) => format!(
+                ", moves on by {}*2*pi in {} of the drive,",
+                motion.turns,
+                periods_in_words(motion.in_periods * response.question.periods)
+            ),
             Some(AperiodicMotion::Unsettled(..)) | None => String::new(),
         };
         blocks.push(Block::Sentence(format!(
@@ -821,6 +823,14 @@ fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
         )));
     }
     blocks
+}
+
+/// A number of periods, in words.
+fn periods_in_words(count: usize) -> String {
+    match count {
+        1 => "one period".to_owned(),
+        count => format!("{count} periods"),
+    }
 }
 
 /// The end of a sentence that says on what a simulation settles that is on no branch.
@@ -845,6 +855,9 @@ fn settles_elsewhere(response: &ResponseDiagram, place: &Elsewhere) -> String {
         }
         (None, Some(AperiodicMotion::Chaotic(..))) => {
             "goes on in chaos: motions nearby part from it.".to_owned()
+        }
+        (None, Some(AperiodicMotion::Rotating(..))) => {
+            "settles on a rotation, which is periodic but for whole turns.".to_owned()
         }
         (None, Some(AperiodicMotion::Unsettled(motion))) => format!(
             "has not settled in time: {} more periods of the drive show no other period, no second frequency and no chaos.",

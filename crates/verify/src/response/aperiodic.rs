@@ -36,7 +36,9 @@ pub enum AperiodicMotion {
     QuasiPeriodic(QuasiPeriodicMotion),
     /// A motion from which those nearby part.
     Chaotic(ChaoticMotion),
-    /// A motion that shows neither, nor repeats itself.
+    /// A motion that repeats itself but for whole turns of an angle.
+    Rotating(RotatingMotion),
+    /// A motion that shows none of these.
     Unsettled(UnsettledMotion),
 }
 
@@ -58,6 +60,17 @@ pub struct ChaoticMotion {
     pub lyapunov_exponent: f64,
     /// Its standard error.
     pub lyapunov_error: f64,
+}
+
+/// A motion that goes round: it repeats itself but for whole turns of 2 pi.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct RotatingMotion {
+    /// The number of turns, negative where the angle decreases; of several angles, of that with the most of them.
+    pub turns: i64,
+    /// The number of periods of the motion that they take.
+    pub in_periods: usize,
 }
 
 /// A motion that neither repeats itself nor is quasi-periodic or chaotic, as far as it was followed: it may
@@ -88,9 +101,11 @@ pub(super) enum LaterMotion {
 
 impl LaterMotion {
     /// The course of a motion with the angular frequency `omega` of its period, from the state at the
-    /// beginning of one; `period` follows a state over a period. `None` if the motion cannot be followed.
+    /// beginning of one; `period` follows a state over a period, and `angles` are the states of which whole
+    /// turns change nothing. `None` if the motion cannot be followed.
     pub(super) fn of(
         start: &[f64],
+        angles: &[usize],
         omega: f64,
         mut period: impl FnMut(&[f64]) -> Option<PeriodSamples>,
     ) -> Option<Self> {
@@ -101,8 +116,13 @@ impl LaterMotion {
             positions.extend(samples.positions);
             states.push(samples.end);
         }
-        if let Some(count) = returns_after(&states) {
-            return Some(Self::Periodic(count, states.pop()?));
+        match returns_after(&states, angles) {
+            Some((count, 0)) if count > 1 => return Some(Self::Periodic(count, states.pop()?)),
+            Some((in_periods, turns)) if turns != 0 => {
+                let motion = RotatingMotion { turns, in_periods };
+                return Some(Self::Aperiodic(AperiodicMotion::Rotating(motion)));
+            }
+            _ => {}
         }
         if let Some(turn) = turn_of(&positions) {
             let motion =
@@ -125,9 +145,9 @@ impl LaterMotion {
     }
 }
 
-/// The number of periods, more than one, after which a motion repeats itself in the end, or will once what
-/// decays is gone, from its states after every period; `None` if it does not.
-fn returns_after(states: &[Vec<f64>]) -> Option<usize> {
+/// The number of periods after which a motion repeats itself in the end, or will once what decays is gone, from its
+/// states after every period, and the whole turns of the angle that turns most; `None` if it does not.
+fn returns_after(states: &[Vec<f64>], angles: &[usize]) -> Option<(usize, i64)> {
     /// The largest number, and that of states which are compared with those so many periods before.
     const LONGEST: usize = 64;
     const STATES: usize = 16;
@@ -135,19 +155,31 @@ fn returns_after(states: &[Vec<f64>]) -> Option<usize> {
     /// has fallen by half within half of all periods.
     const SAME: f64 = 1e-6;
     const NEAR: f64 = 1e-3;
-    let sizes = sizes_of(states);
+    let mut sizes = sizes_of(states);
+    for angle in angles {
+        sizes[*angle] = sizes[*angle].min(PI);
+    }
+    let turns = |way: f64| (way / TAU).round();
     let apart = |end: usize, count: usize| {
-        let pairs = (end - STATES..end)
-            .flat_map(|index| states[index].iter().zip(&states[index - count]).zip(&sizes));
-        let parts = pairs.filter(|(_, size)| **size > 0.0);
-        { parts }.map(|((one, other), size)| (one - other).abs() / size).fold(0.0, f64::max)
+        let states_of = |index: usize| states[index].iter().zip(&states[index - count]);
+        let ways = (end - STATES..end).flat_map(|index| states_of(index).zip(&sizes).enumerate());
+        let ways = ways.filter(|(_, (_, size))| **size > 0.0);
+        let parts = ways.map(|(index, ((one, other), size))| {
+            let way = one - other;
+            let whole = if angles.contains(&index) { TAU * turns(way) } else { 0.0 };
+            (way - whole).abs() / size
+        });
+        parts.fold(0.0, f64::max)
     };
     let (half, end) = (states.len() / 2, states.len());
     let repeats = |count: &usize| {
         let now = apart(end, *count);
         now <= SAME || (now <= NEAR && now <= 0.5 * apart(half, *count))
     };
-    (1..=LONGEST).find(repeats).filter(|count| *count > 1)
+    let count = (1..=LONGEST).find(repeats)?;
+    let ways = angles.iter().map(|angle| states[end - 1][*angle] - states[end - 1 - count][*angle]);
+    let most = ways.map(turns).max_by(|one, other| one.abs().total_cmp(&other.abs()));
+    Some((count, most.unwrap_or(0.0) as i64))
 }
 
 /// Half of the way of each state from its lowest to its highest value.
@@ -344,7 +376,8 @@ mod tests {
             let end = (1.9 * state[0]).rem_euclid(1.0);
             Some(PeriodSamples { positions: vec![state[0]; SAMPLES], end: vec![end] })
         };
-        let Some(LaterMotion::Aperiodic(found)) = LaterMotion::of(&[0.3], TAU, stretching) else {
+        let Some(LaterMotion::Aperiodic(found)) = LaterMotion::of(&[0.3], &[], TAU, stretching)
+        else {
             panic!("it repeats itself")
         };
         let AperiodicMotion::Chaotic(found) = found else { panic!("{found:?}") };
@@ -354,7 +387,7 @@ mod tests {
             let positions = (0..SAMPLES).map(|part| position(part as f64)).collect();
             Some(PeriodSamples { positions, end: vec![state[0] + 1.0] })
         };
-        let Some(LaterMotion::Aperiodic(found)) = LaterMotion::of(&[0.0], TAU, turning) else {
+        let Some(LaterMotion::Aperiodic(found)) = LaterMotion::of(&[0.0], &[], TAU, turning) else {
             panic!("it repeats itself")
         };
         let AperiodicMotion::QuasiPeriodic(found) = found else { panic!("{found:?}") };
@@ -371,10 +404,24 @@ mod tests {
             let end = vec![x * cosine - y * sine, x * sine + y * cosine];
             Some(PeriodSamples { positions: vec![state[0]; SAMPLES], end })
         };
-        let Some(LaterMotion::Periodic(12, state)) = LaterMotion::of(&[0.3, 0.1], 1.0, turning)
+        let Some(LaterMotion::Periodic(12, state)) =
+            LaterMotion::of(&[0.3, 0.1], &[], 1.0, turning)
         else {
             panic!("it does not repeat itself")
         };
         assert!((state[0].hypot(state[1]) - 1.0).abs() < 1e-6);
+    }
+
+    /// An angle that comes to grow by a turn in two periods goes round.
+    #[test]
+    fn a_rotation_is_told_by_its_turns() {
+        let rotating = |state: &[f64]| {
+            let end = vec![state[0] - PI, 1.0 + 0.5 * (state[1] - 1.0)];
+            Some(PeriodSamples { positions: vec![state[0]; SAMPLES], end })
+        };
+        let found = LaterMotion::of(&[0.3, 0.2], &[0], 1.0, rotating);
+        let Some(LaterMotion::Aperiodic(found)) = found else { panic!("it repeats itself") };
+        let expected = RotatingMotion { turns: -1, in_periods: 2 };
+        assert_eq!(found, AperiodicMotion::Rotating(expected));
     }
 }

@@ -112,6 +112,23 @@ pub(super) fn places_of_rest(driven: &Driven, parameter: f64, size: f64) -> Vec<
     found
 }
 
+/// The distance from zero of the farthest equilibrium, stable or not, within four sizes or four units; zero if there is
+/// none. A motion that leaves its well is at least as large.
+pub(super) fn farthest_rest(driven: &Driven, parameter: f64, size: f64) -> f64 {
+    const CELLS: i32 = 64;
+    const REACH: f64 = 4.0;
+    const PHASES: u32 = 8;
+    let mean_force = driven.mean_force(parameter, PHASES);
+    let place = |cell: i32| REACH * size.max(1.0) * (f64::from(cell) + 0.5) / f64::from(CELLS);
+    let forces: Vec<f64> = (-CELLS..=CELLS).map(|cell| mean_force(place(cell))).collect();
+    let zeros = (-CELLS..CELLS)
+        .zip(forces.windows(2))
+        .filter(|(_, pair)| pair[0] * pair[1] < 0.0)
+        .map(|(cell, _)| place(cell).abs().min(place(cell + 1).abs()));
+    // The cell about zero has its zero inside.
+    zeros.fold(0.0, f64::max)
+}
+
 /// The points of one curve that lie in the range.
 fn curve(balance: &DrivenBalance, place: f64, range: [f64; 2], size: f64) -> Vec<BackbonePoint> {
     let mut points = Vec::new();

@@ -83,7 +83,9 @@ use crate::values::Values;
 use crate::verify::Verdict;
 use crate::wall::Wall;
 
-pub use aperiodic::{AperiodicMotion, ChaoticMotion, QuasiPeriodicMotion, UnsettledMotion};
+pub use aperiodic::{
+    AperiodicMotion, ChaoticMotion, QuasiPeriodicMotion, RotatingMotion, UnsettledMotion,
+};
 pub use equations::{Equations, EquationsError};
 pub use error::{ResponseError, SeedSearch};
 pub use ripple::Ripple;

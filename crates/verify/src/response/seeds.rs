@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::DVector;
 
-use super::backbone::{free_oscillator, places_of_rest};
+use super::backbone::{farthest_rest, free_oscillator, places_of_rest};
 use super::balance::DrivenBalance;
 use super::continuation::{BranchNode, BranchPath};
 use super::coverage::Coverage;
@@ -341,6 +341,10 @@ impl PreparedRequest<'_> {
         /// Parts of a turn from one value to the next, which leave no direction out (the golden
         /// section), from one radius to the other, and from one speed to the other.
         const TURNS: [f64; 3] = [0.618_034, 0.5, 0.25];
+        // A motion over a hilltop of the potential is larger than all that stay in a well.
+        let [low, high] = self.question.range;
+        let rests = [low, 0.5 * (low + high), high].map(|at| farthest_rest(&self.driven, at, size));
+        let size = rests.into_iter().fold(size, f64::max);
         let around = |(index, parameter): (usize, &f64)| {
             let parameter = *parameter;
             let omega = self.driven.frequency_at(parameter) * self.question.periods as f64;

@@ -142,7 +142,9 @@ impl PreparedRequest<'_> {
                 let end = path.end[..2].to_vec();
                 Some(PeriodSamples { positions: path.positions(count), end })
             };
-            match LaterMotion::of(&place.start, omega, |state| samples(state, SAMPLES)) {
+            let is_angle = self.repeats_after(std::f64::consts::TAU, parameter);
+            let angles: &[usize] = if is_angle { &[0] } else { &[] };
+            match LaterMotion::of(&place.start, angles, omega, |state| samples(state, SAMPLES)) {
                 Some(LaterMotion::Aperiodic(motion)) => place.aperiodic = Some(motion),
                 Some(LaterMotion::Periodic(count, state)) => {
                     let Some(period) = samples(&state, stability::SAMPLES) else { continue };

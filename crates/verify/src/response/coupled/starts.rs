@@ -387,7 +387,8 @@ impl CoupledProblem<'_> {
                 }
                 Some(PeriodSamples { positions, end })
             };
-            match LaterMotion::of(&place.state, self.frequency_at(parameter), samples) {
+            let omega = self.frequency_at(parameter);
+            match LaterMotion::of(&place.state, &self.angles, omega, samples) {
                 Some(LaterMotion::Aperiodic(motion)) => place.aperiodic = Some(motion),
                 Some(LaterMotion::Periodic(count, unknowns)) => {
                     let start = Start { parameter, unknowns, section: 0.0 };

@@ -76,27 +76,44 @@ impl RationalFunction {
         self.difference(&other.negative())
     }
 
-    /// `self - other`.
+    /// `self - other`. With `g` the common divisor of both denominators it is `(a d/g - c b/g)/(b d/g)`, where
+    /// only a divisor of `g` is left in common (P. Henrici, *J. ACM* 3 (1956) 6).
     #[must_use]
     pub fn difference(&self, other: &Self) -> Self {
-        let numerator = difference(
-            &product(&self.numerator, &other.denominator),
-            &product(&other.numerator, &self.denominator),
-        );
-        self.over(numerator, other)
+        let shared = common_divisor(&self.denominator, &other.denominator);
+        let [own, others] = [self, other].map(|part| without(&part.denominator, &shared));
+        let numerator = trimmed(difference(
+            &product(&self.numerator, &others),
+            &product(&other.numerator, &own),
+        ));
+        if numerator.is_empty() {
+            return Self::number(Zero::zero());
+        }
+        let left = common_divisor(&numerator, &shared);
+        Self {
+            numerator: without(&numerator, &left),
+            denominator: product(&own, &without(&other.denominator, &left)),
+        }
     }
 
-    /// `self * other`.
+    /// `self * other`. Each numerator has a common divisor with the denominator of the other alone.
     #[must_use]
     pub fn product(&self, other: &Self) -> Self {
-        self.over(product(&self.numerator, &other.numerator), other)
-    }
-
-    /// A numerator over the product of two denominators, neither of which is zero.
-    fn over(&self, numerator: Vec<Rational>, other: &Self) -> Self {
-        let denominator = product(&self.denominator, &other.denominator);
-        let reduced = Self::new(&numerator, &denominator);
-        reduced.unwrap_or(Self { numerator, denominator })
+        if self.is_zero() || other.is_zero() {
+            return Self::number(Zero::zero());
+        }
+        let first = common_divisor(&self.numerator, &other.denominator);
+        let second = common_divisor(&other.numerator, &self.denominator);
+        Self {
+            numerator: product(
+                &without(&self.numerator, &first),
+                &without(&other.numerator, &second),
+            ),
+            denominator: product(
+                &without(&self.denominator, &second),
+                &without(&other.denominator, &first),
+            ),
+        }
     }
 
     /// `-self`.
@@ -114,10 +131,11 @@ impl RationalFunction {
 
     /// `self/other`; `None` if the divisor is zero.
     pub fn quotient(&self, other: &Self) -> Option<Self> {
-        Self::new(
-            &product(&self.numerator, &other.denominator),
-            &product(&self.denominator, &other.numerator),
-        )
+        let leading = other.numerator.last()?;
+        let scaled = |list: &[Rational]| list.iter().map(|c| c / leading).collect();
+        let reciprocal =
+            Self { numerator: scaled(&other.denominator), denominator: scaled(&other.numerator) };
+        Some(self.product(&reciprocal))
     }
 
     /// Returns the number in front, and factors without multiple roots with their powers, negative
@@ -170,6 +188,22 @@ impl RationalFunction {
             Some(inner) => (outer, inner),
             None => (Self::number(Rational::one()), self.clone()),
         }
+    }
+}
+
+/// The monic common divisor of two polynomials that are not zero.
+fn common_divisor(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
+    match a.len() <= 1 || b.len() <= 1 {
+        true => vec![One::one()],
+        false => gcd(a, b),
+    }
+}
+
+/// A polynomial over a monic divisor of it.
+fn without(polynomial: &[Rational], divisor: &[Rational]) -> Vec<Rational> {
+    match divisor.len() <= 1 {
+        true => polynomial.to_vec(),
+        false => quotient(polynomial, divisor),
     }
 }
 
@@ -343,5 +377,31 @@ mod tests {
         let back = a.quotient(&b).expect("a divisor").product(&b);
         assert_eq!(back, a);
         assert!(a.quotient(&a.constant(number(0))).is_none());
+    }
+
+    /// Sums, products and quotients beside the same in one fraction, reduced at the end.
+    #[test]
+    fn results_are_in_lowest_terms() {
+        let list = |all: &[i64]| all.iter().map(|c| ratio(*c, 1)).collect::<Vec<_>>();
+        let fraction = |above: &[i64], below: &[i64]| {
+            RationalFunction::new(&list(above), &list(below)).expect("a fraction")
+        };
+        let all = [
+            fraction(&[0, 2, 2], &[6, 5, 1]),
+            fraction(&[3, 4, 1], &[-4, 0, 9]),
+            fraction(&[-2, 3], &[2, 3, 1]),
+            fraction(&[4, 12, 9], &[0, 7]),
+            fraction(&[5], &[1]),
+            number(0),
+        ];
+        for (one, other) in all.iter().flat_map(|one| all.iter().map(move |other| (one, other))) {
+            let [[a, b], [c, d]] = [one, other].map(|part| [&part.numerator, &part.denominator]);
+            let whole =
+                |above: Vec<Rational>, below: &[Rational]| RationalFunction::new(&above, below);
+            let apart = difference(&product(a, d), &product(c, b));
+            assert_eq!(Some(one.difference(other)), whole(apart, &product(b, d)));
+            assert_eq!(Some(one.product(other)), whole(product(a, c), &product(b, d)));
+            assert_eq!(one.quotient(other), whole(product(a, d), &product(b, c)));
+        }
     }
 }

@@ -145,17 +145,21 @@ impl SlowMotion {
 impl SlowNumbers {
     /// `B_j'` at these complex amplitudes.
     pub fn rates(&self, amplitudes: &[Complex<f64>]) -> Vec<Complex<f64>> {
-        let table = self.powers(amplitudes);
+        self.rates_of(&self.powers(amplitudes))
+    }
+
+    /// The rates by the powers of the amplitudes.
+    fn rates_of(&self, table: &PowerTable) -> Vec<Complex<f64>> {
         let one = |terms: &Vec<RateTerm>| {
-            terms.iter().map(|(factor, powers)| factor * product(&table, powers, None)).sum()
+            terms.iter().map(|(factor, powers)| factor * product(table, powers, None)).sum()
         };
         self.rates.iter().map(one).collect()
     }
 
-    /// The derivatives of the rates with respect to each amplitude and its conjugate.
-    fn slopes(&self, amplitudes: &[Complex<f64>]) -> Vec<Vec<[Complex<f64>; 2]>> {
-        let count = amplitudes.len();
-        let table = self.powers(amplitudes);
+    /// The derivatives of the rates with respect to each amplitude and its conjugate, by the powers of the
+    /// amplitudes.
+    fn slopes_of(&self, table: &PowerTable) -> Vec<Vec<[Complex<f64>; 2]>> {
+        let count = table.len();
         let one = |terms: &Vec<RateTerm>| {
             let mut row = vec![[Complex::zero(); 2]; count];
             for (factor, powers) in terms {
@@ -163,7 +167,7 @@ impl SlowNumbers {
                     for (which, slope) in entry.iter_mut().enumerate() {
                         let exponent = powers[mode][which];
                         if exponent != 0 {
-                            let lower = product(&table, powers, Some((mode, which)));
+                            let lower = product(table, powers, Some((mode, which)));
                             *slope += factor * exponent as f64 * lower;
                         }
                     }
@@ -200,13 +204,14 @@ impl SlowNumbers {
             (0..count).map(|mode| Complex::new(place[2 * mode], place[2 * mode + 1])).collect();
         let turning = self.turning(&place.as_slice()[2 * count..]);
         let i = Complex::new(0.0, 1.0);
+        let table = self.powers(&amplitudes);
         let mut residual = DVector::zeros(2 * count);
-        for (mode, rate) in self.rates(&amplitudes).into_iter().enumerate() {
+        for (mode, rate) in self.rates_of(&table).into_iter().enumerate() {
             let rest = rate - i * turning[mode] * amplitudes[mode];
             (residual[2 * mode], residual[2 * mode + 1]) = (rest.re, rest.im);
         }
         let mut slopes = DMatrix::zeros(2 * count, place.len());
-        for (row, entries) in self.slopes(&amplitudes).into_iter().enumerate() {
+        for (row, entries) in self.slopes_of(&table).into_iter().enumerate() {
             for (column, [own, conjugate]) in entries.into_iter().enumerate() {
                 let mut own = own;
                 if row == column {

@@ -17,13 +17,16 @@
 //! place on the orbit: `(y, T) -> (P(y, T), T + s(y))`. The condition is to be the same along the
 //! branch, so that its points lie on one curve.
 //!
-//! A point costs two or three periods with their variations, and as many linear equations of n + 1
-//! unknowns.
+//! A point of a smooth branch costs one or two periods with their variations, another one two or three, and as
+//! many linear equations of n + 1 unknowns.
+
+mod prediction;
 
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 use super::continuation::{self, ContinuationStep, passes, sign_of_determinant, tangent};
 use crate::interrupt::Interrupt;
+use prediction::predicted;
 
 /// A motion over a period with its derivatives.
 #[derive(Clone, Debug)]
@@ -133,6 +136,7 @@ pub struct OrbitBranchLimits {
 /// let equations = OrbitEquations {
 ///     map: &map,
 ///     smooth: true,
+///     accuracy: 4e-15,
 ///     keep: &|_, _| (),
 ///     sizes: &|_| vector(&[1.0, 1.0]),
 /// };
@@ -150,6 +154,8 @@ pub struct OrbitEquations<'a, Path, Kept> {
     /// Whether the derivatives of the map change no faster than the map, so that those a last small
     /// step beside an orbit are its own; otherwise they are computed once more on the orbit.
     pub smooth: bool,
+    /// Relative accuracy of the map: a step of Newton's method that is no longer changes nothing.
+    pub accuracy: f64,
     /// The data that are kept of an orbit with these unknowns.
     pub keep: &'a dyn Fn(&DVector<f64>, &PeriodImage<Path>) -> Kept,
     /// The positive sizes in which changes of the unknowns are measured near an orbit.
@@ -204,8 +210,6 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         /// Length below which steps that no longer shrink are rounding, which is magnified near
         /// folds.
         const ROUNDING: f64 = 1e-6;
-        /// Length of a step that changes nothing.
-        const NOTHING: f64 = 4e-15;
         let mut unknowns = guess.clone();
         let mut before = f64::INFINITY;
         for periods in 1..=MOST {
@@ -230,10 +234,10 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
             }
             // The derivatives are those of the orbit itself: beside a grazing one they change within
             // less than the last step.
-            let (image, factors) = match moved <= NOTHING {
+            unknowns -= step.component_mul(sizes);
+            let (image, factors) = match moved <= self.accuracy {
                 true => (image, factors),
                 false => {
-                    unknowns -= step.component_mul(sizes);
                     let image = self.image(&unknowns)?;
                     let (matrix, _) = Self::bordered(&image, &unknowns, direction, sizes);
                     (image, matrix.lu())
@@ -327,7 +331,8 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
     /// The orbit after the last of these at this distance, and the number of periods that were
     /// followed; `None` if Newton's method does not converge, or leads far from the tangent.
     ///
-    /// The guess continues the cubic through the last two orbits with their tangents.
+    /// The guess continues the polynomial through the last orbits with their tangents, see [`predicted`]:
+    /// through two of them where the branch may have corners.
     fn next(&self, points: &[OrbitPoint<Kept>], length: f64) -> Option<(OrbitPoint<Kept>, usize)> {
         /// Cosine of the angle between tangents beyond which a step was too long.
         const SHARPEST: f64 = 0.94;
@@ -336,18 +341,7 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         let sizes = (self.sizes)(here);
         let along = |point: &OrbitPoint<Kept>| point.tangent.component_div(&sizes).normalize();
         let tangent = along(here);
-        let mut ahead = &tangent * length;
-        if let [.., before, _] = points {
-            let way = (&here.unknowns - &before.unknowns).component_div(&sizes);
-            let gone = way.norm();
-            if gone > 0.0 {
-                let (start, chord) = (along(before), way / gone);
-                let second = &tangent * 2.0 + &start - &chord * 3.0;
-                let third = &tangent + &start - &chord * 2.0;
-                let ratio = length / gone;
-                ahead += (second + third * ratio) * (ratio * length);
-            }
-        }
+        let ahead = predicted(points, &sizes, &tangent, length, if self.smooth { 4 } else { 2 });
         let guess = &here.unknowns + ahead.component_mul(&sizes);
         self.corrected(&guess, &tangent, &sizes).filter(|(point, _)| {
             let moved = (&point.unknowns - &here.unknowns).component_div(&sizes).norm();
@@ -643,6 +637,7 @@ mod tests {
         let equations = OrbitEquations {
             map: &map,
             smooth: false,
+            accuracy: 4e-15,
             keep: &|_, _| (),
             sizes: &|_| vector(&[1.0, 1.0]),
         };
@@ -678,6 +673,7 @@ mod tests {
         let equations = OrbitEquations {
             map: &map,
             smooth: false,
+            accuracy: 4e-15,
             keep: &|_, _| (),
             sizes: &|_| vector(&[1.0, 1.0]),
         };
@@ -695,6 +691,30 @@ mod tests {
         assert!(!equations.goes_round(&known, &here, &next));
     }
 
+    /// y^2 + p^2 = 1: guesses of high order need a period or two.
+    #[test]
+    fn a_smooth_branch_takes_few_periods() {
+        let periods = std::cell::Cell::new(0);
+        let map = scalar(|y, p| {
+            periods.set(periods.get() + 1);
+            [y + y * y + p * p - 1.0, 1.0 + 2.0 * y, 2.0 * p]
+        });
+        let sizes = vector(&[1.0, 1.0]);
+        let equations = OrbitEquations {
+            map: &map,
+            smooth: true,
+            accuracy: 4e-15,
+            keep: &|_, _| (),
+            sizes: &|_| sizes.clone(),
+        };
+        let first = equations.orbit_at(&vector(&[0.9]), 0.4, &sizes).expect("an orbit");
+        periods.set(0);
+        let (points, end) = equations.follow(first, &limits([-2.0, 2.0], 0.05), &|_| false);
+        assert!(end == OrbitBranchEnd::Closed && points.len() > 120, "{end:?} {}", points.len());
+        assert!(points.iter().all(|point| (point.unknowns.norm() - 1.0).abs() < 1e-12));
+        assert!(periods.get() <= points.len() + 15, "{} {}", periods.get(), points.len());
+    }
+
     /// y -> y + p y - y^3: y = 0 crosses p = y^2 at zero.
     #[test]
     fn where_branches_cross_the_orientation_changes_and_the_other_one_begins() {
@@ -702,6 +722,7 @@ mod tests {
         let equations = OrbitEquations {
             map: &map,
             smooth: false,
+            accuracy: 4e-15,
             keep: &|_, _| (),
             sizes: &|_| vector(&[1.0, 1.0]),
         };
@@ -753,6 +774,7 @@ mod tests {
         let equations = OrbitEquations {
             map: &map,
             smooth: false,
+            accuracy: 4e-15,
             keep: &|_, _| (),
             sizes: &|_| sizes.clone(),
         };
@@ -805,6 +827,7 @@ mod tests {
         let equations = OrbitEquations {
             map: &map,
             smooth: false,
+            accuracy: 4e-15,
             keep: &|_, _| (),
             sizes: &|_| sizes.clone(),
         };

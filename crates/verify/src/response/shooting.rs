@@ -102,7 +102,13 @@ impl PreparedRequest<'_> {
             let own = balance.core.extent(&orbit.kept.coefficients);
             self.orbit_sizes(own, size, orbit.parameter())
         };
-        Some(call(&OrbitEquations { map: &map, smooth: false, keep: &keep, sizes: &sizes }))
+        Some(call(&OrbitEquations {
+            map: &map,
+            smooth: false,
+            accuracy: 4e-15,
+            keep: &keep,
+            sizes: &sizes,
+        }))
     }
 
     /// The sizes of position, velocity and parameter beside a motion of this extent.

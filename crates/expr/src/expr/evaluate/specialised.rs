@@ -1,5 +1,5 @@
 //! A list of operations where some of its arguments have values: what depends on these alone is computed
-//! once.
+//! once, a division by such a number is a product with its reciprocal, and several such factors are one.
 
 use super::{Instruction, InstructionList};
 
@@ -29,6 +29,10 @@ impl InstructionList {
                 known[place] = Some(values[place]);
             }
         }
+        let (rewritten, factors) = self.with_joined_factors(&known);
+        let operations = || (begin..size).zip(&rewritten);
+        known.extend(factors.into_iter().map(Some));
+        let size = known.len();
         let mut is_read = vec![false; size];
         results.iter().for_each(|place| is_read[*place] = true);
         for (place, instruction) in operations().rev() {
@@ -54,6 +58,42 @@ impl InstructionList {
         let results = results.iter().map(|place| places[*place]).collect();
         (Self { argument_count: self.argument_count, constants, instructions }, results)
     }
+
+    /// The operations where the values at some places are known: a division by a known number, and a product
+    /// of several with one other value, is a product with one number. These numbers are at the places behind
+    /// all others.
+    fn with_joined_factors(&self, known: &[Option<f64>]) -> (Vec<Instruction>, Vec<f64>) {
+        let (size, begin) = (self.size(), self.argument_count + self.constants.len());
+        let mut factors: Vec<f64> = Vec::new();
+        // The value and the number of which a place is the product.
+        let mut scaled: Vec<Option<(usize, f64)>> = vec![None; size];
+        let rewritten = (begin..size).zip(&self.instructions).map(|(place, instruction)| {
+            let (value, factor) = match *instruction {
+                _ if known[place].is_some() => return instruction.clone(),
+                Instruction::Divide(a, b) => (a, known[b].map(f64::recip)),
+                Instruction::Multiply(a, b) if known[a].is_some() => (b, known[a]),
+                Instruction::Multiply(a, b) => (a, known[b]),
+                _ => return instruction.clone(),
+            };
+            let own = factor.map(|factor| (value, factor));
+            let inner = own.and_then(|(value, factor)| {
+                let (inner, other) = scaled[value]?;
+                Some((inner, other * factor))
+            });
+            let mut all = [inner, own].into_iter().flatten();
+            let Some((value, factor)) = all.find(|(_, factor)| factor.is_normal()) else {
+                return instruction.clone();
+            };
+            scaled[place] = Some((value, factor));
+            let index = factors.iter().position(|other| *other == factor).unwrap_or_else(|| {
+                factors.push(factor);
+                factors.len() - 1
+            });
+            Instruction::Multiply(value, size + index)
+        });
+        let rewritten = rewritten.collect();
+        (rewritten, factors)
+    }
 }
 
 impl Instruction {
@@ -71,6 +111,29 @@ impl Instruction {
             Self::Power(a, b) => Self::Power(place(a), place(b)),
             Self::Unary(function, a) => Self::Unary(function, place(a)),
             Self::Binary(function, a, b) => Self::Binary(function, place(a), place(b)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::expr::{CompiledList, Expr};
+
+    /// x/k, and 3 (x/k)/(7 k), are products of x with one number each.
+    #[test]
+    fn factors_that_are_known_are_one_product() {
+        let texts = ["x/k", "(x/k + 0*k)*3/(7*k)", "sin(x)/k^2"];
+        let all = texts.map(|text| text.parse::<Expr>().expect(text));
+        let list = CompiledList::new(&all, &["x".into(), "k".into()]).expect("a list");
+        let known = list.specialised(|_| true, 1, &[0.3]);
+        assert_eq!(known.list.instructions.len(), 4, "{known:?}");
+        let (mut values, mut own) = ([0.0; 3], [0.0; 3]);
+        for x in [0.7, -1e-3, 1e200] {
+            list.call(&[x, 0.3], &mut vec![], &mut values);
+            known.call(&[x, f64::NAN], &mut vec![], &mut own);
+            for (value, own) in values.iter().zip(own) {
+                assert!((value - own).abs() <= 4.0 * f64::EPSILON * value.abs(), "{value} {own}");
+            }
         }
     }
 }

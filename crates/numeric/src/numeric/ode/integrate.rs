@@ -312,7 +312,8 @@ pub struct RunEnd<Y> {
     pub point: Point<Y>,
     /// The index of the event that ended it; `None` at the end time.
     pub event: Option<usize>,
-    /// The step that would be tried next.
+    /// The step that would be tried next, were there no end: a motion that goes on from here, or one like it,
+    /// may begin with it.
     pub next_step: f64,
 }
 
@@ -646,6 +647,7 @@ impl<S: Sample> Leg<'_, '_, S> {
         let mut solver = self.solver(scheme, &start, first_step)?;
         let mut watches = vec![SignTracker::default(); self.events.len()];
         let (mut state, mut first) = (start, true);
+        let mut next_step = solver.h();
         let mut quotient = [(); TERMS].map(|()| state.values().leading(self.inside));
         for attempts in 0.. {
             let time = state.time();
@@ -656,7 +658,8 @@ impl<S: Sample> Leg<'_, '_, S> {
             if self.given_up(time, attempts).is_some() {
                 return None;
             }
-            let wanted = solver.h().min(self.options.maximum_step).min(remaining);
+            let allowed = solver.h().min(self.options.maximum_step);
+            let wanted = allowed.min(remaining);
             solver.set_h(wanted);
             self.equations.non_finite.set(false);
             let outcome = solver.step(&self.equations);
@@ -675,12 +678,12 @@ impl<S: Sample> Leg<'_, '_, S> {
                 }
                 continue;
             }
-            let next = S::new(solver.t(), solver.y().clone());
-            if !next.is_finite() {
+            let values = solver.y().as_ref();
+            if !(solver.t().is_finite() && values.iter().all(|value| value.is_finite())) {
                 return None;
             }
             if !self.events.is_empty() {
-                let begin = S::new(time, state.values().leading(self.inside));
+                let begin = S::new(time, solver.y_prev().leading(self.inside));
                 solver.write_quotient(&mut quotient);
                 let is_finite =
                     |values: &S::Values| values.as_ref().iter().all(|own| own.is_finite());
@@ -697,9 +700,13 @@ impl<S: Sample> Leg<'_, '_, S> {
                 }
                 quotient = step.into_quotient();
             }
-            (state, first) = (next, false);
+            // A step that the end has cut short says little of the next one.
+            let cut = if wanted < allowed { allowed } else { 0.0 };
+            next_step = solver.h().max(cut);
+            state.set(solver.t(), values.len(), |index| values[index]);
+            first = false;
         }
-        Some((S::new(self.end_time, state.values()), None, solver.h()))
+        Some((S::new(self.end_time, state.values()), None, next_step))
     }
 
     /// Returns all values where the first ones are known, within the step that begins in a state.
@@ -784,7 +791,10 @@ impl<S: Sample> Leg<'_, '_, S> {
             return Some((scheme.fresh)(self.options, [0.0, f64::INFINITY], self.inside));
         }
         self.equations.non_finite.set(false);
-        self.equations.diff(time, &values, &mut values.clone());
+        // With a first step nothing but the rates at the start is evaluated.
+        if first_step <= 0.0 {
+            self.equations.diff(time, &values, &mut values.clone());
+        }
         if self.equations.non_finite.get() {
             return None;
         }
@@ -795,6 +805,7 @@ impl<S: Sample> Leg<'_, '_, S> {
             // prescribes a short one.
             if solver.init(&self.equations, time, self.end_time, &values).is_ok()
                 && solver.h() > 0.0
+                && (first_step <= 0.0 || !self.equations.non_finite.get())
             {
                 return Some(solver);
             }

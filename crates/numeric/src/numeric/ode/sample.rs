@@ -97,6 +97,10 @@ impl<Y: StateVector> Sample for Point<Y> {
             *own = value(index);
         }
     }
+
+    fn is_finite(&self) -> bool {
+        self.t.is_finite() && self.y.as_ref().iter().all(|value| value.is_finite())
+    }
 }
 
 impl Sample for State {

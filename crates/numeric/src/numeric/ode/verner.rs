@@ -91,13 +91,14 @@ pub(super) struct VernerSteps<Y: StateVector> {
     step_before: f64,
     values: Y,
     values_before: Y,
-    rates: Y,
-    /// The rates of all stages, one after the other.
-    stages: Vec<f64>,
-    /// Values at which rates are evaluated, and the rates.
+    /// The rates of all stages; of those behind the step the first ones. The first stage of the next step is
+    /// that behind the last one, if there is one.
+    stages: Vec<Y>,
+    is_behind_step: bool,
+    /// Values at which rates are evaluated.
     scratch: [Y; 2],
-    /// The first values at which rates are evaluated behind the step, and the rates.
-    leading: [Y; 2],
+    /// The first values at which rates are evaluated behind the step.
+    leading: Y,
     /// As many zeros as there are interpolated values.
     zeros: Y,
     /// The widest registers of the processor.
@@ -126,10 +127,10 @@ impl<Y: StateVector> VernerSteps<Y> {
             step_before: 0.0,
             values: Y::zeros(),
             values_before: Y::zeros(),
-            rates: Y::zeros(),
             stages: vec![],
+            is_behind_step: false,
             scratch: [Y::zeros(), Y::zeros()],
-            leading: [Y::zeros(), Y::zeros()],
+            leading: Y::zeros(),
             zeros: Y::zeros(),
             arch: Arch::new(),
             rejections: 0,
@@ -156,13 +157,12 @@ impl<Y: StateVector> VernerSteps<Y> {
             count += 1;
         }
         let factors = &factors[..count];
-        let mut found = self.leading[0].clone();
+        let mut found = self.leading.clone();
         self.arch.dispatch(StageSum {
             values: self.values_before.as_ref(),
             step: self.step_before,
             terms: factors,
             stages: &self.stages,
-            count: self.values.as_ref().len(),
             into: found.as_mut(),
         });
         Some(found)
@@ -177,7 +177,6 @@ impl<Y: StateVector> VernerSteps<Y> {
                 step: self.step_before,
                 terms: factors,
                 stages: &self.stages,
-                count: self.values.as_ref().len(),
                 into: term.as_mut(),
             });
         }
@@ -188,7 +187,7 @@ impl<Y: StateVector> VernerSteps<Y> {
     fn chosen_step<F: ODE<f64, Y> + ?Sized>(&mut self, equations: &F, end: f64) -> f64 {
         const SMALL: f64 = 1e-10;
         let allowed = |value: f64| self.absolute_tolerance + self.relative_tolerance * value.abs();
-        let (values, rates) = (self.values.as_ref(), self.rates.as_ref());
+        let (values, rates) = (self.values.as_ref(), self.stages[0].as_ref());
         let square = |one: &[f64]| -> f64 {
             { one.iter().zip(values) }.fold(0.0, |sum, (x, y)| sum + (x / allowed(*y)).powi(2))
         };
@@ -217,40 +216,30 @@ impl<Y: StateVector> VernerSteps<Y> {
     /// the first ones.
     fn evaluate<F: ODE<f64, Y> + ?Sized>(&mut self, equations: &F, stage: usize) {
         let table = &*COEFFICIENTS;
-        let all = if stage < STAGES { &mut self.scratch } else { &mut self.leading };
-        let [at, rates] = all;
+        let at = if stage < STAGES { &mut self.scratch[0] } else { &mut self.leading };
         self.arch.dispatch(StageSum {
             values: self.values.as_ref(),
             step: self.step,
             terms: &table.stages[stage],
             stages: &self.stages,
-            count: self.values.as_ref().len(),
             into: at.as_mut(),
         });
-        equations.diff(self.time + table.nodes[stage] * self.step, at, rates);
-        set_stage(&mut self.stages, self.values.as_ref().len(), stage, rates.as_ref());
+        equations.diff(self.time + table.nodes[stage] * self.step, at, &mut self.stages[stage]);
     }
-}
-
-/// Writes the rates of a stage, of all values or of the first ones.
-fn set_stage(stages: &mut [f64], count: usize, stage: usize, rates: &[f64]) {
-    stages[stage * count..][..rates.len()].copy_from_slice(rates);
 }
 
 /// The first values, as many as there are to write, with the products of a step, factors and rates of the
 /// stages added, in the order of the stages.
-struct StageSum<'a> {
+struct StageSum<'a, Y> {
     values: &'a [f64],
     step: f64,
     terms: &'a [(usize, f64)],
-    /// The rates of all stages, one after the other.
-    stages: &'a [f64],
-    /// The number of rates of a stage.
-    count: usize,
+    /// The rates of all stages.
+    stages: &'a [Y],
     into: &'a mut [f64],
 }
 
-impl StageSum<'_> {
+impl<Y: StateVector> StageSum<'_, Y> {
     /// Writes so many sums from one on, which stay in registers.
     #[inline(always)]
     fn write<const WIDTH: usize>(&mut self, first: usize) {
@@ -258,7 +247,7 @@ impl StageSum<'_> {
         part.copy_from_slice(&self.values[first..first + WIDTH]);
         for (stage, factor) in self.terms {
             let factor = factor * self.step;
-            let rates = &self.stages[stage * self.count + first..][..WIDTH];
+            let rates = &self.stages[*stage].as_ref()[first..][..WIDTH];
             for (part, rate) in part.iter_mut().zip(rates) {
                 *part += factor * rate;
             }
@@ -267,13 +256,17 @@ impl StageSum<'_> {
     }
 }
 
-impl WithSimd for StageSum<'_> {
+impl<Y: StateVector> WithSimd for StageSum<'_, Y> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, _: S) {
         let last = self.into.len();
         let mut first = 0;
+        while last - first >= 24 {
+            self.write::<24>(first);
+            first += 24;
+        }
         while last - first >= 8 {
             self.write::<8>(first);
             first += 8;
@@ -300,14 +293,14 @@ impl<Y: StateVector> OrdinaryNumericalMethod<f64, Y> for VernerSteps<Y> {
         (self.time, self.time_before) = (time, time);
         self.values = values.clone();
         self.values_before = values.clone();
-        self.rates = values.clone();
-        let first = values.leading(self.interpolated);
-        self.zeros = first.clone();
+        self.leading = values.leading(self.interpolated);
+        self.zeros = self.leading.clone();
         self.zeros.as_mut().fill(0.0);
-        self.leading = [first.clone(), first];
-        self.stages = vec![0.0; ALL_STAGES * values.as_ref().len()];
+        let model = |stage| if stage <= STAGES { values } else { &self.leading };
+        self.stages = (0..ALL_STAGES).map(|stage| model(stage).clone()).collect();
+        self.is_behind_step = false;
         self.scratch = [values.clone(), values.clone()];
-        equations.diff(time, values, &mut self.rates);
+        equations.diff(time, values, &mut self.stages[0]);
         self.step = match self.first_step {
             0.0 => self.chosen_step(equations, end),
             step => step,
@@ -328,8 +321,9 @@ impl<Y: StateVector> OrdinaryNumericalMethod<f64, Y> for VernerSteps<Y> {
             return Err(StepError::StepSize { t: self.time, y: self.values.clone() });
         }
         let table = &*COEFFICIENTS;
-        let count = self.values.as_ref().len();
-        set_stage(&mut self.stages, count, 0, self.rates.as_ref());
+        if std::mem::take(&mut self.is_behind_step) {
+            self.stages.swap(0, STAGES);
+        }
         for stage in 1..STAGES {
             self.evaluate(equations, stage);
         }
@@ -340,7 +334,6 @@ impl<Y: StateVector> OrdinaryNumericalMethod<f64, Y> for VernerSteps<Y> {
                 step: self.step,
                 terms,
                 stages: &self.stages,
-                count,
                 into: sum.as_mut(),
             });
         }
@@ -365,9 +358,9 @@ impl<Y: StateVector> OrdinaryNumericalMethod<f64, Y> for VernerSteps<Y> {
             }
             self.status = Status::Solving;
             let end = self.time + self.step;
-            equations.diff(end, &self.scratch[0], &mut self.rates);
+            equations.diff(end, &self.scratch[0], &mut self.stages[STAGES]);
+            self.is_behind_step = true;
             if self.interpolated > 0 {
-                set_stage(&mut self.stages, count, STAGES, self.rates.as_ref());
                 for stage in STAGES + 1..ALL_STAGES {
                     self.evaluate(equations, stage);
                 }
@@ -375,7 +368,7 @@ impl<Y: StateVector> OrdinaryNumericalMethod<f64, Y> for VernerSteps<Y> {
             (self.time_before, self.step_before) = (self.time, self.step);
             self.time = end;
             std::mem::swap(&mut self.values_before, &mut self.values);
-            self.values.clone_from(&self.scratch[0]);
+            std::mem::swap(&mut self.values, &mut self.scratch[0]);
         }
         self.step = (self.step * scale).min(self.longest_step);
         Ok(Evals::new())

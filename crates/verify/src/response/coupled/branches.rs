@@ -713,7 +713,8 @@ impl CoupledProblem<'_> {
                     continue;
                 }
                 let all = self.sizes(&mixed, &known.scale, &guess);
-                let start = guess.rows(0, count).into_owned();
+                let start =
+                    (&guess + aside_of_chord(from, to, part, &all)).rows(0, count).into_owned();
                 let solved = self.with_orbits(&known.scale, path.anchor.of_orbit(from), |orbits| {
                     orbits.orbit_at(&start, parameter, &all)
                 });
@@ -746,5 +747,24 @@ impl CoupledProblem<'_> {
             }
         }
         None
+    }
+}
+
+/// The way from the chord between two neighbouring orbits to the cubic in the parameter with their tangents, at a
+/// part of the way; zero beside a fold, where the branch is no function of the parameter. In: both orbits, the
+/// part, and the sizes of the unknowns.
+fn aside_of_chord(from: &Orbit, to: &Orbit, part: f64, sizes: &DVector<f64>) -> DVector<f64> {
+    /// Largest distance of the cubic from the chord, in the length of the chord.
+    const FARTHEST: f64 = 0.25;
+    let chord = &to.unknowns - &from.unknowns;
+    let way = to.parameter() - from.parameter();
+    // The changes of the unknowns at the rates of both ends, beyond that along the chord.
+    let beyond = |orbit: &Orbit| &orbit.tangent * (way / orbit.parameter_slope()) - &chord;
+    let rest = 1.0 - part;
+    let aside = (beyond(from) * rest - beyond(to) * part) * (part * rest);
+    let length = |way: &DVector<f64>| way.component_div(sizes).norm();
+    match length(&aside) <= FARTHEST * length(&chord) {
+        true => aside,
+        false => DVector::zeros(chord.len()),
     }
 }

@@ -136,6 +136,16 @@ impl<'a> Between<'a> {
         Self { orbits, ends, found: vec![(0.0, ends[0].clone()), (1.0, ends[1].clone())] }
     }
 
+    /// Whether an orbit so near to this part of the way is known that both differ by rounding.
+    fn is_known(&self, part: f64) -> bool {
+        const NEAR: f64 = 1e-10;
+        let index = self.found.partition_point(|(other, _)| *other < part);
+        let beside = [index.checked_sub(1), Some(index)].into_iter().flatten();
+        { beside }
+            .filter_map(|index| self.found.get(index))
+            .any(|(other, _)| (other - part).abs() < NEAR)
+    }
+
     /// The orbit at a part of the way.
     fn at(&mut self, part: f64) -> Option<Orbit> {
         let index = self.found.partition_point(|(other, _)| *other < part);
@@ -206,8 +216,30 @@ pub(super) fn change_between(
     if kind == NeimarkSacker && outside(from).abs_diff(outside(to)) != 2 {
         return None;
     }
+    // On the crossing of a cycle with another one a multiplier is 1.
+    const AT_ONE: f64 = 0.02;
+    let is_cycle = matches!(problem.kind, Kind::SelfExcited);
+    let has_one = |orbit: &Orbit| {
+        let at_one = |value: &Complex<f64>| (value - Complex::from(1.0)).norm() < AT_ONE;
+        problem.multipliers(orbit).is_some_and(|all| all.iter().any(at_one))
+    };
+    /// Halvings of the way between two orbits after which a crossing would show in the multipliers.
+    const HALVINGS: usize = 12;
     let mut known = Between::new(orbits, [from, to]);
-    let value = |part: f64| known.at(part).map_or(f64::NAN, |orbit| test(problem, kind, &orbit));
+    let mut halvings = 0;
+    let value = |part: f64| {
+        // A search beside a known orbit would go on in rounding.
+        if part > 0.0 && part < 1.0 && known.is_known(part) {
+            return 0.0;
+        }
+        let orbit = known.at(part);
+        halvings += 1;
+        let is_none = |orbit: &Orbit| {
+            is_cycle && kind == BranchPoint && halvings > HALVINGS && !has_one(orbit)
+        };
+        let orbit = orbit.filter(|orbit| !is_none(orbit));
+        orbit.map_or(f64::NAN, |orbit| test(problem, kind, &orbit))
+    };
     let part = match kind {
         BranchPoint => Some(bisect_sign_change(value)),
         _ => find_root(value, 0.0, 1.0).ok(),
@@ -222,10 +254,7 @@ pub(super) fn change_between(
         orbit.tangent = &to.unknowns - &from.unknowns;
         // Where the plane in which a cycle begins touches the cycle, the determinant changes its sign
         // without a crossing.
-        const AT_ONE: f64 = 0.02;
-        let at_one = |value: &Complex<f64>| (value - Complex::from(1.0)).norm() < AT_ONE;
-        let is_cycle = matches!(problem.kind, Kind::SelfExcited);
-        if is_cycle && !problem.multipliers(&orbit)?.iter().any(at_one) {
+        if is_cycle && !has_one(&orbit) {
             return None;
         }
     }

@@ -27,7 +27,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::branches::Known;
 use super::changes::changes_between;
-use super::flow::Flow;
+use super::flow::{Flow, TOLERANCE};
 use super::problem::{CoupledProblem, Kind};
 use super::state_jumps::{StateJumps, drive_of, flow_in_phase};
 use crate::coupled::CoupledEquations;
@@ -290,6 +290,7 @@ impl TwoParameters<'_> {
         let equations = OrbitEquations {
             map: &map,
             smooth: !self.flow.jumps(),
+            accuracy: TOLERANCE,
             keep: &|_, image: &PeriodImage<Vec<f64>>| image.path.clone(),
             sizes: &|_| sizes.clone(),
         };
@@ -396,7 +397,7 @@ pub(super) fn stable_motions(
         let question = question.at(second, *value);
         let problem = CoupledProblem::new(&question, equations)?;
         let known = problem.driven_branches(true);
-        counts.push(parameters.iter().map(|p| problem.stable_at(&known, *p)).collect());
+        counts.push(problem.stable_at(&known, &parameters));
         question.progress.advance();
         if question.interrupt.is_requested() {
             break;
@@ -407,9 +408,9 @@ pub(super) fn stable_motions(
 }
 
 impl CoupledProblem<'_> {
-    /// The number of stable motions of these branches at a value of the parameter.
-    fn stable_at(&self, known: &Known, parameter: f64) -> usize {
-        let mut count = 0;
+    /// The numbers of stable motions of these branches at values of the parameter.
+    fn stable_at(&self, known: &Known, parameters: &[f64]) -> Vec<usize> {
+        let mut counts = vec![0; parameters.len()];
         for branch in &known.branches {
             let stable: Vec<bool> = branch
                 .orbits
@@ -418,19 +419,26 @@ impl CoupledProblem<'_> {
                 .collect();
             for (pair, stable) in branch.orbits.windows(2).zip(stable.windows(2)) {
                 let [from, to] = [pair[0].parameter(), pair[1].parameter()];
+                if !(stable[0] && stable[1]) {
+                    continue;
+                }
                 // Each point belongs to the way that begins at it.
-                let passes = if from < to {
-                    (from..to).contains(&parameter)
-                } else {
-                    from > parameter && parameter >= to
+                let is_passed = |parameter: f64| {
+                    let passes = if from < to {
+                        (from..to).contains(&parameter)
+                    } else {
+                        from > parameter && parameter >= to
+                    };
+                    passes || to == parameter && to == self.question.range[1]
                 };
-                let is_last = to == parameter && to == self.question.range[1];
-                if (passes || is_last) && stable[0] && stable[1] {
-                    count += if branch.mirrored { 2 } else { 1 };
+                for (count, _) in
+                    counts.iter_mut().zip(parameters).filter(|(_, own)| is_passed(**own))
+                {
+                    *count += if branch.mirrored { 2 } else { 1 };
                 }
             }
         }
-        count
+        counts
     }
 }
 

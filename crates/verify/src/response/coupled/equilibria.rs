@@ -75,7 +75,13 @@ impl CoupledProblem<'_> {
             DVector::from_iterator(n + 1, state.iter().map(size).chain([high - low]))
         };
         let sizes = |rest: &Rest| sizes_at(rest.start());
-        let equations = OrbitEquations { map: &map, smooth: true, keep: &|_, _| (), sizes: &sizes };
+        let equations = OrbitEquations {
+            map: &map,
+            smooth: true,
+            accuracy: 4e-15,
+            keep: &|_, _| (),
+            sizes: &sizes,
+        };
         let limits = OrbitBranchLimits {
             range: self.question.range,
             longest: LONGEST_STEP,

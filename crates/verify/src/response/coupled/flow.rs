@@ -21,12 +21,12 @@ use super::sliding::{self, SlidingRun, SlidingStop};
 use super::surfaces::{FlowEvent, JumpSurfaces, Table};
 use crate::expr::Expr;
 use crate::interrupt::Interrupt;
-use crate::numeric::ode::{IntegrationOptions, Point, end_or_event, end_values};
+use crate::numeric::ode::{IntegrationOptions, Point, end_or_event};
 use crate::response::ResponseError;
 use crate::symbol::Symbol;
 
 /// Relative error of a step, in the sizes of the states.
-const TOLERANCE: f64 = 1e-12;
+pub(super) const TOLERANCE: f64 = 1e-12;
 
 /// Unit of the variations beside the states: their relative error may be this much larger, since they
 /// are steps of Newton's method and multipliers, and not the motion.
@@ -54,6 +54,11 @@ pub(super) struct Flow {
     stopped: Cell<Option<SlidingStop>>,
     /// The reason why a motion ended at an event, if one did.
     ended: Cell<Option<SlidingStop>>,
+    /// The step with which the last motion without variations would have gone on: the next one, which begins
+    /// where that ended or near it, is tried with it. Zero where nothing is known: the rates choose one then.
+    next_step: Cell<f64>,
+    /// The rates of the last motion without variations, with its parameter.
+    prepared: RefCell<Option<(f64, ScaledRates)>>,
     /// The evaluations of the right sides so far, each counted as often as there are motions and variations.
     evaluations: Cell<u64>,
 }
@@ -158,6 +163,8 @@ impl Flow {
             interrupt: Interrupt::default(),
             stopped: Cell::new(None),
             ended: Cell::new(None),
+            next_step: Cell::new(0.0),
+            prepared: RefCell::new(None),
             evaluations: Cell::new(0),
         })
     }
@@ -292,9 +299,15 @@ impl Flow {
         sizes: &[f64],
         unit: Option<f64>,
     ) -> Option<SlidingRun> {
-        let options = self.options(times[1] - times[0], jumps.smooth);
+        let mut options = self.options(times[1] - times[0], jumps.smooth);
+        if unit.is_none() {
+            options.first_step = self.next_step.replace(0.0);
+        }
         match sliding::follow(jumps, start, times, parameter, sizes, unit, &options) {
             Ok(run) => {
+                if unit.is_none() {
+                    self.next_step.set(run.next_step);
+                }
                 self.evaluations.set(self.evaluations.get() + run.evaluations);
                 Some(run)
             }
@@ -379,7 +392,11 @@ impl Flow {
             let run = self.sliding(jumps, start, [from, to], parameter, sizes, None)?;
             return Some(run.values.iter().zip(sizes).map(|(value, size)| value * size).collect());
         }
-        let own = ScaledRates::new(&self.rates, None, &[parameter], sizes);
+        let prepared = self.prepared.take().filter(|(known, _)| *known == parameter);
+        let own = match prepared {
+            Some((_, known)) => known.in_sizes(sizes),
+            None => ScaledRates::new(&self.rates, None, &[parameter], sizes),
+        };
         let memory = RefCell::new(vec![0.0; n + 2]);
         let rates = |time: f64, scaled: &Vec<f64>, rates: &mut Vec<f64>| {
             self.count(1);
@@ -388,9 +405,15 @@ impl Flow {
             own.write(arguments, scaled, rates);
         };
         let scaled = start.iter().zip(sizes).map(|(value, size)| value / size).collect();
-        let options = self.options(to - from, self.smooth);
-        let end = end_values(rates, Point { t: from, y: scaled }, to, &options)?;
-        Some(end.iter().zip(sizes).map(|(value, size)| value * size).collect())
+        let options = IntegrationOptions {
+            first_step: self.next_step.replace(0.0),
+            ..self.options(to - from, self.smooth)
+        };
+        let start = Point { t: from, y: scaled };
+        let end = end_or_event(rates, 0, start, to, &[], &options)?;
+        self.next_step.set(end.next_step);
+        self.prepared.replace(Some((parameter, own)));
+        Some(end.point.y.iter().zip(sizes).map(|(value, size)| value * size).collect())
     }
 
     /// The motion between two times, with its derivatives; `None` if the end is not reached.

@@ -15,6 +15,7 @@ use std::f64::consts::TAU;
 use nalgebra::DVector;
 
 use super::curves::TwoParameters;
+use super::flow::TOLERANCE;
 use super::problem::Orbit;
 use crate::numeric::orbit_branch::{OrbitBranchLimits, OrbitEquations, OrbitPoint, PeriodImage};
 use crate::response::LONGEST_STEP;
@@ -151,6 +152,7 @@ impl TwoParameters<'_> {
         let equations = OrbitEquations {
             map: &map,
             smooth: false,
+            accuracy: TOLERANCE,
             keep: &|_, image: &PeriodImage<Vec<f64>>| image.path.clone(),
             sizes: &|_| sizes.clone(),
         };

@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::flow::{Encounters, Flow, FlowImage};
+use super::flow::{Encounters, Flow, FlowImage, TOLERANCE};
 use super::state_jumps::{StateJumps, angles, drive_of, flow_in_phase};
 use super::surfaces::largest;
 use crate::coupled::{CoupledEquations, Energy};
@@ -386,7 +386,13 @@ impl<'a> CoupledProblem<'a> {
         };
         let keep = |_: &DVector<f64>, image: &PeriodImage<Course>| image.path.clone();
         let sizes = |orbit: &Orbit| self.sizes(&orbit.kept.travel, scale, &orbit.unknowns);
-        call(&OrbitEquations { map: &map, smooth: self.smooth, keep: &keep, sizes: &sizes })
+        call(&OrbitEquations {
+            map: &map,
+            smooth: self.smooth,
+            accuracy: TOLERANCE,
+            keep: &keep,
+            sizes: &sizes,
+        })
     }
 
     /// The sizes in which a motion from a start is followed.

@@ -13,6 +13,7 @@ use super::surfaces::Table;
 use crate::expr::PreparedList;
 
 /// The rates of a motion, with those of its variations if they are followed.
+#[derive(Clone, Debug)]
 pub(super) struct ScaledRates {
     states: usize,
     alone: RowList,
@@ -20,6 +21,7 @@ pub(super) struct ScaledRates {
 }
 
 /// Compiled entries of a matrix, row by row.
+#[derive(Clone, Debug)]
 struct RowList {
     values: RefCell<PreparedList>,
     rows: Vec<Row>,
@@ -27,19 +29,21 @@ struct RowList {
 }
 
 /// The rate of a state and of its variations.
+#[derive(Clone, Debug)]
 struct Row {
     state: usize,
-    /// The size of the state.
-    size: f64,
+    /// The reciprocal of the size of the state.
+    factor: f64,
     /// The index of the value of the rate.
     rate: Option<usize>,
     /// The derivatives by the states: the first and the one behind the last.
     slopes: [usize; 2],
-    /// The index of the derivative by the parameter, and the unit of the variations.
+    /// The index of the derivative by the parameter, and the unit of the variations over the size of the state.
     by_parameter: Option<(usize, f64)>,
 }
 
 /// The factor of the variations of a state in the rates of those of another one.
+#[derive(Clone, Debug)]
 struct Slope {
     /// The index of the value.
     value: usize,
@@ -80,10 +84,10 @@ impl ScaledRates {
                 ));
                 rows.push(Row {
                     state,
-                    size: sizes[state],
+                    factor: sizes[state].recip(),
                     rate: of_column(0),
                     slopes: [first, slopes.len()],
-                    by_parameter: of_column(n + 1).map(|value| (value, unit)),
+                    by_parameter: of_column(n + 1).map(|value| (value, unit / sizes[state])),
                 });
             }
             RowList { values: RefCell::new(PreparedList::new(&values)), rows, slopes }
@@ -93,6 +97,14 @@ impl ScaledRates {
             alone: list(rates, 1.0),
             varied: varied.map(|(table, unit)| list(table, unit)),
         }
+    }
+
+    /// These rates, without variations, in other sizes of the states.
+    pub(super) fn in_sizes(mut self, sizes: &[f64]) -> Self {
+        for row in &mut self.alone.rows {
+            row.factor = sizes[row.state].recip();
+        }
+        self
     }
 
     /// Whether rates of so many values are those of the states alone.
@@ -109,7 +121,7 @@ impl ScaledRates {
         let values = &mut *list.values.borrow_mut();
         values.call(arguments);
         for row in &list.rows {
-            rates[row.state] = row.rate.map_or(0.0, |rate| values.value(rate) / row.size);
+            rates[row.state] = row.rate.map_or(0.0, |rate| values.value(rate) * row.factor);
         }
         if self.are_alone(scaled.len()) {
             return;
@@ -146,7 +158,7 @@ impl ScaledRates {
 impl Row {
     /// The part of the parameter in the rate of the variation by it.
     fn by_parameter(&self, values: &PreparedList) -> f64 {
-        self.by_parameter.map_or(0.0, |(value, unit)| unit * values.value(value) / self.size)
+        self.by_parameter.map_or(0.0, |(value, unit)| unit * values.value(value))
     }
 }
 

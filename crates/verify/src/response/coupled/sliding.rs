@@ -90,6 +90,8 @@ pub(super) struct SlidingRun {
     pub(super) slowest: f64,
     /// The times of impacts and other events.
     pub(super) times: Vec<f64>,
+    /// The step with which the motion would go on.
+    pub(super) next_step: f64,
     /// Evaluations of the rates.
     pub(super) evaluations: u64,
 }
@@ -165,6 +167,7 @@ pub(super) fn follow(
     options: &IntegrationOptions,
 ) -> Result<SlidingRun, SlidingStop> {
     let mut run = EventRun::new(surfaces, start, from, parameter, sizes, unit);
+    run.next_step = options.first_step;
     let options = IntegrationOptions {
         maximum_step: options.maximum_step.min((to - from) / LEAST_STEPS),
         ..*options
@@ -198,6 +201,7 @@ pub(super) fn follow(
                     events: run.events,
                     slowest: run.slowest,
                     times: run.times,
+                    next_step: run.next_step,
                     evaluations: run.evaluations.get(),
                 });
             }

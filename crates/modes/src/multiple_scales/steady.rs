@@ -27,7 +27,23 @@ use crate::symbol::Symbol;
 type RateTerm = (Complex<f64>, Vec<[usize; 2]>);
 
 /// The powers of each `B_j` and of its conjugate, from the zeroth on.
-type PowerTable = Vec<[Vec<Complex<f64>>; 2]>;
+struct PowerTable {
+    /// The number of powers of each.
+    count: usize,
+    powers: Vec<Complex<f64>>,
+}
+
+impl PowerTable {
+    /// The number of amplitudes.
+    fn modes(&self) -> usize {
+        self.powers.len() / (2 * self.count)
+    }
+
+    /// The power of an amplitude, or of its conjugate.
+    fn power(&self, mode: usize, which: usize, exponent: usize) -> Complex<f64> {
+        self.powers[(2 * mode + which) * self.count + exponent]
+    }
+}
 
 /// Slow equations with numbers for all parameters.
 #[derive(Clone, Debug)]
@@ -159,7 +175,7 @@ impl SlowNumbers {
     /// The derivatives of the rates with respect to each amplitude and its conjugate, by the powers of the
     /// amplitudes.
     fn slopes_of(&self, table: &PowerTable) -> Vec<Vec<[Complex<f64>; 2]>> {
-        let count = table.len();
+        let count = table.modes();
         let one = |terms: &Vec<RateTerm>| {
             let mut row = vec![[Complex::zero(); 2]; count];
             for (factor, powers) in terms {
@@ -180,13 +196,16 @@ impl SlowNumbers {
 
     /// The powers of each amplitude and of its conjugate, as far as they occur.
     fn powers(&self, amplitudes: &[Complex<f64>]) -> PowerTable {
-        let powers = |base: Complex<f64>| {
-            let next = |power: &Complex<f64>| Some(power * base);
-            std::iter::successors(Some(Complex::new(1.0, 0.0)), next)
-                .take(self.highest + 1)
-                .collect()
-        };
-        amplitudes.iter().map(|b| [powers(*b), powers(b.conj())]).collect()
+        let count = self.highest + 1;
+        let mut powers = Vec::with_capacity(2 * amplitudes.len() * count);
+        for base in amplitudes.iter().flat_map(|b| [*b, b.conj()]) {
+            let mut power = Complex::new(1.0, 0.0);
+            for _ in 0..count {
+                powers.push(power);
+                power *= base;
+            }
+        }
+        PowerTable { count, powers }
     }
 
     /// `rho_j` from the rates along the basis of what is open.
@@ -450,7 +469,7 @@ fn product(
         for (which, exponent) in exponents.iter().enumerate() {
             let exponent = exponent - usize::from(lower == Some((mode, which)));
             if exponent > 0 {
-                found *= table[mode][which][exponent];
+                found *= table.power(mode, which, exponent);
             }
         }
     }

@@ -141,6 +141,8 @@ struct EventRun<'a> {
     /// The times of all impacts and other events.
     times: Vec<f64>,
     evaluations: Cell<u64>,
+    /// The instants at which rates were asked for since the last event, each with the states.
+    seen: RefCell<Vec<f64>>,
     /// The rates where nothing holds that were prepared before.
     prepared: RefCell<Vec<PreparedRates>>,
 }
@@ -367,6 +369,7 @@ impl<'a> EventRun<'a> {
             slowest: f64::INFINITY,
             times: Vec::new(),
             evaluations: Cell::new(0),
+            seen: RefCell::default(),
             prepared: RefCell::default(),
         }
     }
@@ -490,8 +493,7 @@ impl<'a> EventRun<'a> {
         let memory = &memory;
         // Where nothing holds, the sides stay what they are.
         let free = run.held.is_empty().then(|| run.free_rates());
-        // The instants at which the rates were asked for, each with the states.
-        let seen = RefCell::new(Vec::new());
+        run.seen.borrow_mut().clear();
         let rates = |time: f64, values: &Vec<f64>, rates: &mut Vec<f64>| {
             // Within a step the states alone are asked for.
             let unit = run.unit.filter(|_| values.len() > n);
@@ -503,7 +505,7 @@ impl<'a> EventRun<'a> {
                 rates.fill(f64::NAN);
                 return;
             }
-            let seen = &mut *seen.borrow_mut();
+            let seen = &mut *run.seen.borrow_mut();
             seen.push(time);
             seen.extend_from_slice(&arguments[..n]);
             match (&free, unit) {
@@ -588,7 +590,9 @@ impl<'a> EventRun<'a> {
         let meeting = end.event.map(|event| meetings[event]);
         drop(events);
         (self.time, self.values, self.next_step) = (end.point.t, end.point.y, end.next_step);
-        self.widen_bounds(&seen.into_inner());
+        let seen = self.seen.take();
+        self.widen_bounds(&seen);
+        self.seen.replace(seen);
         Ok(meeting)
     }
 

@@ -351,12 +351,17 @@ impl Flow {
                 by_parameter: slopes.column(n).into_owned(),
             };
         }
-        let all = self.varied.at(&arguments);
-        LinearisedRates {
-            rates: all.column(0).into_owned(),
-            by_state: all.columns(1, n).into_owned(),
-            by_parameter: all.column(n + 1).into_owned(),
-        }
+        let mut found = LinearisedRates {
+            rates: DVector::zeros(n),
+            by_state: DMatrix::zeros(n, n),
+            by_parameter: DVector::zeros(n),
+        };
+        self.varied.visit(&arguments, |(row, column), value| match column {
+            0 => found.rates[row] = value,
+            column if column <= n => found.by_state[(row, column - 1)] = value,
+            _ => found.by_parameter[row] = value,
+        });
+        found
     }
 
     /// The evaluations of the right sides so far, each counted as often as there are motions and variations.

@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 use nalgebra::DMatrix;
 
 use crate::exact::rational::to_f64;
-use crate::expr::{CompiledFunction, CompiledList, Expr, Function, Node};
+use crate::expr::{CompiledFunction, CompiledList, Expr, Function, Node, PreparedList};
 use crate::response::ResponseError;
 use crate::series::guard::Guards;
 use crate::symbol::{Symbol, fresh_stem};
@@ -29,8 +29,8 @@ pub(super) struct Table {
     shape: (usize, usize),
     places: Vec<(usize, usize)>,
     entries: CompiledList,
-    /// Memory for registers and values, which calls share.
-    memory: RefCell<(Vec<f64>, Vec<f64>)>,
+    /// The same entries with memory for their values, which calls share.
+    prepared: RefCell<PreparedList>,
 }
 
 impl Table {
@@ -47,16 +47,17 @@ impl Table {
             }
         }
         let shape = (rows.len(), rows.first().map_or(0, Vec::len));
-        let memory = RefCell::new((vec![], vec![0.0; places.len()]));
-        Ok(Self { shape, places, entries: CompiledList::new(&entries, arguments)?, memory })
+        let entries = CompiledList::new(&entries, arguments)?;
+        let prepared = RefCell::new(PreparedList::new(&entries));
+        Ok(Self { shape, places, entries, prepared })
     }
 
     /// Calls a function with the place and the value of each entry that is not zero throughout.
     pub(super) fn visit(&self, arguments: &[f64], mut visit: impl FnMut((usize, usize), f64)) {
-        let (registers, values) = &mut *self.memory.borrow_mut();
-        self.entries.call(arguments, registers, values);
-        for (place, value) in self.places.iter().zip(values) {
-            visit(*place, *value);
+        let values = &mut *self.prepared.borrow_mut();
+        values.call(arguments);
+        for (index, place) in self.places.iter().enumerate() {
+            visit(*place, values.value(index));
         }
     }
 

@@ -69,11 +69,11 @@ impl InstructionList {
         let mut scaled: Vec<Option<(usize, f64)>> = vec![None; size];
         let rewritten = (begin..size).zip(&self.instructions).map(|(place, instruction)| {
             let (value, factor) = match *instruction {
-                _ if known[place].is_some() => return instruction.clone(),
+                _ if known[place].is_some() => return *instruction,
                 Instruction::Divide(a, b) => (a, known[b].map(f64::recip)),
                 Instruction::Multiply(a, b) if known[a].is_some() => (b, known[a]),
                 Instruction::Multiply(a, b) => (a, known[b]),
-                _ => return instruction.clone(),
+                _ => return *instruction,
             };
             let own = factor.map(|factor| (value, factor));
             let inner = own.and_then(|(value, factor)| {
@@ -82,7 +82,7 @@ impl InstructionList {
             });
             let mut all = [inner, own].into_iter().flatten();
             let Some((value, factor)) = all.find(|(_, factor)| factor.is_normal()) else {
-                return instruction.clone();
+                return *instruction;
             };
             scaled[place] = Some((value, factor));
             let index = factors.iter().position(|other| *other == factor).unwrap_or_else(|| {

@@ -422,6 +422,7 @@ fn refused(error: ResponseError) -> Failure {
             Some(format!("add {}", values_of(names)))
         }
         ResponseError::NoParameter { known, .. } => known.first().map(|name| format!("--vary {name}=FROM:TO")),
+        ResponseError::OnlyCounts { .. } => Some("vary a parameter of a force, a condition or another state".to_owned()),
         ResponseError::Given(name) => Some(format!("leave out its value, or vary another parameter than {name}")),
         ResponseError::Frequency { parameter, .. } => {
             Some(format!("--vary {parameter} over positive frequencies alone"))
@@ -465,6 +466,9 @@ fn refused(error: ResponseError) -> Failure {
             "--vary omega from or to beside one of them; where the forces are linear the frequency does not change with the amplitude".to_owned(),
         ),
         ResponseError::NoMotion { undamped: true, .. } => Some("add damping, such as 2*zeta*x'".to_owned()),
+        ResponseError::NoMotion { repeats: Some(periods @ 2..), .. } => {
+            Some(format!("--periods {periods} asks for them"))
+        }
         ResponseError::NoMotion { .. } => {
             Some("the motion escapes or never repeats itself there: try another range".to_owned())
         }

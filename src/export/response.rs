@@ -115,7 +115,7 @@ impl Coupled {
         let asked = &response.question;
         let coordinates = match asked.equations.oscillator() {
             Some(_) => vec![],
-            None => asked.equations.coordinates(),
+            None => response.coordinates(),
         };
         let mut meaning = match coordinates.is_empty() {
             true => String::new(),

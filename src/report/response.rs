@@ -353,43 +353,60 @@ fn impacts_and_events(response: &ResponseDiagram, branch: &Branch) -> Vec<Block<
     let impacts: (_, _, fn(&SteadyMotion) -> usize) =
         ("Impacts", question.walls.is_empty(), |point| point.impacts);
     let events: (_, _, fn(&SteadyMotion) -> usize) =
-        ("Events", question.events.is_empty(), |point| point.events);
-    [impacts, events]
-        .into_iter()
-        .filter(|(_, is_absent, _)| !is_absent)
-        .map(|(what, _, count)| counts(response, branch, what, count))
-        .collect()
+        ("Events", !response.has_events(), |point| point.events);
+    let of_motion = [impacts, events].into_iter().filter(|(_, is_absent, _)| !is_absent);
+    let of_motion = of_motion.map(|(what, _, count)| {
+        let count = |point: &SteadyMotion| match count(point) {
+            0 => "none".to_owned(),
+            count => count.to_string(),
+        };
+        stretches(response, branch, &format!("{what} in a period:"), count)
+    });
+    let is_counted = branch.points.iter().any(|point| !point.counted.is_empty());
+    let counters = response.counters.iter().enumerate().filter(|_| is_counted);
+    let counted = counters.map(|(index, name)| {
+        let value = |point: &SteadyMotion| match point.counted.get(index) {
+            Some(value) => significant(*value, 6),
+            None => "-".to_owned(),
+        };
+        // What is summed up along the motion changes with it from point to point.
+        const MOST_NUMBERS: usize = 12;
+        let stretches_of_one = branch.points.chunk_by(|one, other| value(one) == value(other));
+        if stretches_of_one.count() <= MOST_NUMBERS {
+            return stretches(response, branch, &format!("A period takes {name} from 0 to"), value);
+        }
+        let values = branch.points.iter().filter_map(|point| point.counted.get(index));
+        let low = values.clone().copied().fold(f64::INFINITY, f64::min);
+        let high = values.copied().fold(f64::NEG_INFINITY, f64::max);
+        let [low, high] = [low, high].map(|value| significant(value, 4));
+        Block::Sentence(format!("A period takes {name} from 0 to between {low} and {high}."))
+    });
+    of_motion.chain(counted).collect()
 }
 
 /// The numbers in a period of what a count counts, along a branch.
-fn counts(
+fn stretches(
     response: &ResponseDiagram,
     branch: &Branch,
     what: &str,
-    count: fn(&SteadyMotion) -> usize,
+    value: impl Fn(&SteadyMotion) -> String,
 ) -> Block<'static> {
     /// Largest number of listed parts.
     const MOST: usize = 6;
     let name = response.question.parameter;
     let stretches: Vec<String> = branch
         .points
-        .chunk_by(|one, other| count(one) == count(other))
+        .chunk_by(|one, other| value(one) == value(other))
         .map(|stretch| {
             let parameters = stretch.iter().map(|point| point.parameter);
             let low = parameters.clone().fold(f64::INFINITY, f64::min);
             let high = parameters.fold(f64::NEG_INFINITY, f64::max);
-            let count = match count(&stretch[0]) {
-                0 => "none".to_owned(),
-                count => count.to_string(),
-            };
-            format!("{count} from {name} = {} to {}", significant(low, 4), significant(high, 4))
+            let value = value(&stretch[0]);
+            format!("{value} from {name} = {} to {}", significant(low, 4), significant(high, 4))
         })
         .collect();
     let more = if stretches.len() > MOST { ", and so on" } else { "" };
-    Block::Sentence(format!(
-        "{what} in a period: {}{more}.",
-        stretches[..stretches.len().min(MOST)].join(", ")
-    ))
+    Block::Sentence(format!("{what} {}{more}.", stretches[..stretches.len().min(MOST)].join(", ")))
 }
 
 /// Whether a part of an expression jumps.

@@ -23,9 +23,15 @@ pub struct ResponseDocument {
     pub schema: String,
     /// The equation of motion; coupled equations are separated by `;`.
     pub equation: String,
-    /// The coordinates of coupled equations. Left out for one coordinate.
+    /// The coordinates of coupled equations, without those that only count. Left out for one coordinate.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub coordinates: Vec<String>,
+    /// The states that only count: they enter neither forces nor conditions. Left out where there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub counters: Vec<String>,
+    /// The values of each state that changes at events alone, among finitely many. Left out where there is none.
+    #[serde(default, skip_serializing_if = "Map::is_empty")]
+    pub modes: Map<Vec<f64>>,
     /// The quantity of coupled equations whose amplitude, phase and peak are listed, in the
     /// coordinates. Left out for one coordinate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -69,7 +75,8 @@ pub struct ResponseDocument {
     /// The events, as `--event` takes them; left out without one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub events: Vec<EventDocument>,
-    /// The number of events in a period at each point of a branch; left out without an event.
+    /// The number of events in a period at each point of a branch, without those that set nothing but what only
+    /// counts; left out without an event.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub event_counts: Vec<Vec<usize>>,
     /// Where branches change.
@@ -156,6 +163,10 @@ pub struct ResponsePoint {
     /// The positions of all coordinates at t = 0, then their rates. Left out for one coordinate.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub state: Vec<f64>,
+    /// The value after a period of each state that only counts and begins the period at zero. Left out where there
+    /// is none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub counted: Vec<f64>,
     /// The energy of a free motion without damping over that of rest. Left out where it is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub energy: Option<f64>,
@@ -277,6 +288,7 @@ fn point(point: &response::SteadyMotion) -> ResponsePoint {
         phases: each(|motion| motion.phase),
         peaks: each(|motion| motion.peak),
         state: starts.chain(rates).collect(),
+        counted: point.counted.clone(),
         energy: point.energy,
     }
 }
@@ -316,13 +328,19 @@ pub fn response(response: &ResponseDiagram) -> ResponseDocument {
     let asked = &response.question;
     let coupled = asked.equations.oscillator().is_none();
     let coordinates = match coupled {
-        true => asked.equations.coordinates().iter().map(ToString::to_string).collect(),
+        true => response.coordinates().iter().map(ToString::to_string).collect(),
         false => vec![],
     };
     ResponseDocument {
         schema: DocumentKind::Response.schema().to_owned(),
         equation: asked.equations.to_string(),
         coordinates,
+        counters: response.counters.iter().map(ToString::to_string).collect(),
+        modes: response
+            .modes
+            .iter()
+            .map(|(name, values)| (name.to_string(), values.clone()))
+            .collect(),
         of: coupled.then(|| listed_quantity(response)),
         parameters: constants(&asked.values),
         parameter: asked.parameter.to_string(),
@@ -348,7 +366,7 @@ pub fn response(response: &ResponseDiagram) -> ResponseDocument {
         walls: asked.walls.iter().map(WallDocument::new).collect(),
         impacts: counts(response, !asked.walls.is_empty(), |point| point.impacts),
         events: asked.events.iter().map(EventDocument::new).collect(),
-        event_counts: counts(response, !asked.events.is_empty(), |point| point.events),
+        event_counts: counts(response, response.has_events(), |point| point.events),
         bifurcations: response.bifurcations.clone(),
         equilibria: response.equilibria.clone(),
         along: asked.along.map(|(name, _)| name.to_string()),

@@ -49,13 +49,13 @@ pub(crate) fn listed_quantity(response: &ResponseDiagram) -> String {
     let question = &response.question;
     match &question.of {
         Some(quantity) => quantity.to_string(),
-        None => question.equations.coordinates().first().map(Symbol::to_string).unwrap_or_default(),
+        None => response.coordinates().first().map(Symbol::to_string).unwrap_or_default(),
     }
 }
 
 /// The coordinates that have a column of their own; none if they are too many.
 fn columns_of_their_own(response: &ResponseDiagram) -> Vec<Symbol> {
-    let coordinates = response.question.equations.coordinates();
+    let coordinates = response.coordinates();
     if coordinates.len() <= MOST_COLUMNS { coordinates } else { vec![] }
 }
 
@@ -86,6 +86,7 @@ pub(super) fn question(response: &ResponseDiagram) -> Vec<Block<'static>> {
             }
         ),
     };
+    let kept_apart = counters(response).into_iter().chain(modes(response)).map(Block::Sentence);
     let listed = listed_quantity(response);
     let amplitudes = match columns_of_their_own(response).is_empty() {
         true => format!("amplitude: of the first harmonic of {listed}"),
@@ -109,7 +110,38 @@ pub(super) fn question(response: &ResponseDiagram) -> Vec<Block<'static>> {
         ),
     ]
     .map(Block::Sentence)
-    .to_vec()
+    .into_iter()
+    .chain(kept_apart)
+    .collect()
+}
+
+/// The sentence on the states that only count; `None` without them.
+fn counters(response: &ResponseDiagram) -> Option<String> {
+    let names: Vec<String> = response.counters.iter().map(Symbol::to_string).collect();
+    let (verb, belong) = match names.len() {
+        0 => return None,
+        1 => ("counts, and enters", "it does not belong"),
+        _ => ("count, and enter", "they do not belong"),
+    };
+    Some(format!(
+        "{} only {verb} neither a force nor a condition: {belong} to the motion, and neither do events that set nothing else.",
+        names.join(", ")
+    ))
+}
+
+/// The sentence on the values of modes; `None` without them.
+fn modes(response: &ResponseDiagram) -> Option<String> {
+    let of_mode = |(name, values): &(Symbol, Vec<f64>)| {
+        let values: Vec<String> = values.iter().map(|value| decimal(*value)).collect();
+        format!("{name} is {}", values.join(" or "))
+    };
+    let all: Vec<String> = response.modes.iter().map(of_mode).collect();
+    (!all.is_empty()).then(|| {
+        format!(
+            "{}, and changes at events alone: a motion repeats itself where it is again what it was.",
+            all.join(", ")
+        )
+    })
 }
 
 /// A text as the heading of a column.
@@ -178,7 +210,7 @@ pub(super) fn kind_in_words(kind: BifurcationKind, criticality: Option<Criticali
 
 /// The sentence on the mirror image of a branch.
 pub(super) fn mirror_image(response: &ResponseDiagram) -> String {
-    let coordinates = response.question.equations.coordinates();
+    let coordinates = response.coordinates();
     let image: Vec<String> = coordinates.iter().map(|name| format!("-{name}")).collect();
     let later = match response.self_excited {
         true => "",
@@ -202,7 +234,10 @@ pub(super) fn states_in_words(response: &ResponseDiagram, place: &Elsewhere) -> 
 /// The states of the equations: the coordinates, then the velocities of those of second order.
 fn state_names(response: &ResponseDiagram) -> Vec<Symbol> {
     match &response.question.equations {
-        Equations::Coupled(equations) => equations.rates.states.clone(),
+        Equations::Coupled(equations) => {
+            let is_of_motion = |name: &&Symbol| !response.counters.contains(name);
+            equations.rates.states.iter().filter(is_of_motion).copied().collect()
+        }
         Equations::One(oscillator) => {
             vec![oscillator.coordinate, oscillator.velocity()]
         }

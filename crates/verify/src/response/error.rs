@@ -72,6 +72,17 @@ pub enum ResponseError {
         /// The parameters of the equation.
         known: Vec<Symbol>,
     },
+    /// The parameter to vary stands only where states are set that only count.
+    #[error(
+        "the motion does not depend on `{parameter}`: it stands only where {} set, which only {}", are_set(.counters),
+        if .counters.len() == 1 { "counts" } else { "count" }
+    )]
+    OnlyCounts {
+        /// The parameter.
+        parameter: Symbol,
+        /// The states that only count.
+        counters: Vec<Symbol>,
+    },
     /// The parameter that varies has a value.
     #[error("`{0}` varies and is given a value as well")]
     Given(Symbol),
@@ -103,7 +114,7 @@ pub enum ResponseError {
         range: [f64; 2],
     },
     /// No periodic motion was found as an initial guess.
-    #[error("no periodic motion was found at {parameter} = {}{}", decimal(*.at), if *undamped { ": without damping the amplitude is unbounded at resonance" } else { "" })]
+    #[error("no periodic motion was found at {parameter} = {}{}", decimal(*.at), without_motion(*undamped, *repeats))]
     NoMotion {
         /// The parameter.
         parameter: Symbol,
@@ -111,6 +122,8 @@ pub enum ResponseError {
         at: f64,
         /// Whether nothing damps the motion.
         undamped: bool,
+        /// The number of periods of the drive after which simulations repeat themselves, if they do.
+        repeats: Option<usize>,
     },
     /// The search was interrupted before there was a branch.
     #[error(
@@ -241,6 +254,22 @@ fn frequencies(all: &[f64]) -> String {
         [one] => format!("the frequency {one}"),
         several => format!("the frequencies {}", several.join(", ")),
     }
+}
+
+/// The reason why there is no periodic motion, where it is known.
+fn without_motion(undamped: bool, repeats: Option<usize>) -> String {
+    match (undamped, repeats) {
+        (true, _) => ": without damping the amplitude is unbounded at resonance".to_owned(),
+        (false, None) => String::new(),
+        (false, Some(periods)) => {
+            format!(", but simulations repeat themselves after {periods} periods of the drive")
+        }
+    }
+}
+
+/// Names of states that are set, as a subject.
+fn are_set(states: &[Symbol]) -> String {
+    format!("{} {}", list(states), if states.len() == 1 { "is" } else { "are" })
 }
 
 fn list(symbols: &[Symbol]) -> String {

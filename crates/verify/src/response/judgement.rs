@@ -231,6 +231,7 @@ impl PreparedRequest<'_> {
             error,
             coordinates: vec![],
             energy: None,
+            counted: vec![],
         }
     }
 

@@ -171,6 +171,9 @@ pub struct SteadyMotion {
     /// The energy of a free motion without damping over that of rest, of coupled equations whose
     /// energy is known; else `None`.
     pub energy: Option<f64>,
+    /// The value after a period of each state that only counts and begins the period at zero, in the order of
+    /// [`ResponseDiagram::counters`]; empty without such states, or where the period could not be followed.
+    pub counted: Vec<f64>,
 }
 
 /// The motion of one of several coordinates.
@@ -460,6 +463,11 @@ pub struct ResponseDiagram {
     pub curves: Vec<BifurcationCurve>,
     /// The numbers of stable motions over both, where a second one was given.
     pub stable_motions: Option<StableMotions>,
+    /// The states that only count: their rates are zero, and they enter neither forces nor conditions nor other
+    /// states. They do not belong to the motions.
+    pub counters: Vec<Symbol>,
+    /// The states that change at events alone, among finitely many values, with these values.
+    pub modes: Vec<(Symbol, Vec<f64>)>,
     /// Whether the search for coupled motions ended because it had taken as much work as it may, so that
     /// branches may be missing or end early, and bifurcations are not listed.
     pub exhausted: bool,
@@ -637,6 +645,18 @@ impl ResponseDiagram {
                 false => Criticality::Subcritical,
             });
         }
+    }
+
+    /// The coordinates that belong to the motions: all but those that only count.
+    pub fn coordinates(&self) -> Vec<Symbol> {
+        let all = self.question.equations.coordinates();
+        all.into_iter().filter(|name| !self.counters.contains(name)).collect()
+    }
+
+    /// Whether there are events that set a state which belongs to the motions.
+    pub fn has_events(&self) -> bool {
+        let assignments = self.question.events.iter().flat_map(|event| &event.assignments);
+        { assignments }.any(|(state, _)| !self.counters.contains(state))
     }
 
     /// Whether a branch ends for this reason.

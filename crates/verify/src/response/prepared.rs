@@ -261,6 +261,8 @@ impl<'a> PreparedRequest<'a> {
             equilibria: vec![],
             curves: vec![],
             stable_motions: None,
+            counters: vec![],
+            modes: vec![],
             exhausted: false,
             sparse: vec![],
             complete,
@@ -439,9 +441,12 @@ impl<'a> PreparedRequest<'a> {
         match (self.question.interrupt.is_requested(), self.driven.self_excited) {
             (true, _) => ResponseError::Interrupted { parameter, tried: self.tried.get() },
             (false, true) => ResponseError::NoCycle { parameter, range },
-            (false, false) => {
-                ResponseError::NoMotion { parameter, at: range[0], undamped: self.driven.undamped }
-            }
+            (false, false) => ResponseError::NoMotion {
+                parameter,
+                at: range[0],
+                undamped: self.driven.undamped,
+                repeats: None,
+            },
         }
     }
 }

@@ -18,6 +18,7 @@ use super::wave::{PeriodSamples, SAMPLES, Wave};
 use crate::event::StateEvent;
 use crate::exact::rational::from_f64;
 use crate::expr::Expr;
+use crate::interrupt::Interrupt;
 use crate::mechanics::Rates;
 use crate::numeric::harmonics::Transform;
 use crate::response::bifurcation::BifurcationKind;
@@ -111,12 +112,74 @@ impl OrbitPath {
     }
 }
 
-/// The equations with walls and events, in a time that begins at zero.
-struct TimedEquations {
-    right: Vec<Expr>,
-    mass: Vec<Vec<Expr>>,
-    walls: Vec<Wall>,
-    events: Vec<StateEvent>,
+/// The equations with walls and events, whose motion is followed by Taylor series.
+#[derive(Clone, Debug)]
+pub(super) struct TimedEquations {
+    /// The states, of which the coordinates are the first, and their number.
+    pub(super) states: Vec<Symbol>,
+    pub(super) coordinates: usize,
+    /// The rates of the states.
+    pub(super) right: Vec<Expr>,
+    pub(super) mass: Vec<Vec<Expr>>,
+    pub(super) walls: Vec<Wall>,
+    pub(super) events: Vec<StateEvent>,
+}
+
+impl TimedEquations {
+    /// The equations in the time from here on; `None` for a time that is no number.
+    fn later(self, begin: f64) -> Option<Self> {
+        if begin == 0.0 {
+            return Some(self);
+        }
+        let time = Symbol::new("t");
+        let later = Expr::from(time) + Expr::number(from_f64(begin)?);
+        let later: BTreeMap<Symbol, Expr> = [(time, later)].into();
+        let moved = |expression: &Expr| -> Option<Expr> {
+            match expression.contains(time) {
+                true => expression.substitute_all(&later).ok(),
+                false => Some(expression.clone()),
+            }
+        };
+        let all = |row: &Vec<Expr>| -> Option<Vec<Expr>> { row.iter().map(moved).collect() };
+        let wall = |wall: &Wall| {
+            Some(Wall { gap: moved(&wall.gap)?, restitution: moved(&wall.restitution)? })
+        };
+        let event = |event: &StateEvent| event.substitute_all(&later).ok();
+        Some(Self {
+            right: all(&self.right)?,
+            mass: self.mass.iter().map(all).collect::<Option<_>>()?,
+            walls: self.walls.iter().map(wall).collect::<Option<_>>()?,
+            events: self.events.iter().map(event).collect::<Option<_>>()?,
+            ..self
+        })
+    }
+
+    /// The motion from a state at a time over a duration, with values of all parameters; `None` if it cannot
+    /// be followed all the way.
+    pub(super) fn motion(
+        self,
+        start: Vec<f64>,
+        [begin, duration]: [f64; 2],
+        values: BTreeMap<Symbol, f64>,
+        interrupt: Interrupt,
+    ) -> Option<Trajectory> {
+        let timed = self.later(begin)?;
+        let coordinates = timed.states[..timed.coordinates].to_vec();
+        let rates = Rates { states: timed.states, right: timed.right };
+        let request = TrajectoryRequest {
+            values,
+            start,
+            duration,
+            step_limit: STEP_LIMIT,
+            interrupt,
+            mass: Some(timed.mass),
+            ..TrajectoryRequest::of_rates(coordinates, rates)
+                .with_walls(timed.walls)
+                .with_events(timed.events)
+        };
+        let motion = request.follow_by(Integrator::Taylor).ok()?;
+        motion.is_complete().then_some(motion)
+    }
 }
 
 /// The harmonics of a wave in the phase of the drive, from those in the phase from a section on.
@@ -139,22 +202,19 @@ impl CoupledProblem<'_> {
     ) -> Option<OrbitPath> {
         let numbers = [(self.question.parameter, parameter)].into();
         if self.in_time.jumps() {
-            let timed = self.in_later_time(begin)?;
-            let rates = Rates { states: self.states.clone(), right: timed.right };
-            let coordinates = self.states[..self.coordinates].to_vec();
-            let course = TrajectoryRequest {
-                values: numbers,
-                start: self.in_time.onto_walls(start, [begin, duration], parameter),
-                duration,
-                step_limit: STEP_LIMIT,
-                interrupt: self.question.interrupt,
-                mass: Some(timed.mass),
-                ..TrajectoryRequest::of_rates(coordinates, rates)
-                    .with_walls(timed.walls)
-                    .with_events(timed.events)
+            let states = self.states.clone();
+            let timed = TimedEquations {
+                right: self.right.clone(),
+                states,
+                coordinates: self.coordinates,
+                mass: self.mass.clone(),
+                walls: self.walls.clone(),
+                events: self.events.clone(),
             };
-            let motion = course.follow_by(Integrator::Taylor).ok()?;
-            return motion.is_complete().then(|| OrbitPath::Events(Box::new(motion)));
+            let start = self.in_time.onto_walls(start, [begin, duration], parameter);
+            let motion =
+                timed.motion(start, [begin, duration], numbers, self.question.interrupt)?;
+            return Some(OrbitPath::Events(Box::new(motion)));
         }
         let path = match self.series.with_numbers(&numbers) {
             Some(solver) => solver.solve([0.0, duration], start).ok()?,
@@ -178,33 +238,6 @@ impl CoupledProblem<'_> {
             0.0 => 0.0,
             section => section / self.frequency_of(orbit),
         }
-    }
-
-    /// The equations, walls and events in the time from here on; `None` for a time that is no number.
-    fn in_later_time(&self, begin: f64) -> Option<TimedEquations> {
-        let time = Symbol::new("t");
-        let later = Expr::from(time) + Expr::number(from_f64(begin)?);
-        let later: BTreeMap<Symbol, Expr> = [(time, later)].into();
-        let moved = |expression: &Expr| -> Option<Expr> {
-            match begin == 0.0 || !expression.contains(time) {
-                true => Some(expression.clone()),
-                false => expression.substitute_all(&later).ok(),
-            }
-        };
-        let all = |row: &Vec<Expr>| -> Option<Vec<Expr>> { row.iter().map(moved).collect() };
-        let wall = |wall: &Wall| {
-            Some(Wall { gap: moved(&wall.gap)?, restitution: moved(&wall.restitution)? })
-        };
-        let event = |event: &StateEvent| match begin {
-            0.0 => Some(event.clone()),
-            _ => event.substitute_all(&later).ok(),
-        };
-        Some(TimedEquations {
-            right: all(&self.right)?,
-            mass: self.mass.iter().map(all).collect::<Option<_>>()?,
-            walls: self.walls.iter().map(wall).collect::<Option<_>>()?,
-            events: self.events.iter().map(event).collect::<Option<_>>()?,
-        })
     }
 
     /// The highest harmonic that is kept.
@@ -362,6 +395,9 @@ impl CoupledProblem<'_> {
             error: path.as_ref().and_then(|path| self.error(orbit, path, period, scale)),
             coordinates,
             energy: self.energy.as_ref().map(|(energy, rest)| energy.over(rest, start)),
+            counted: self.counters.as_ref().map_or(vec![], |counters| {
+                counters.after_period((&self.states, own_start), [begin, period], parameter)
+            }),
         }
     }
 
@@ -438,6 +474,8 @@ impl CoupledProblem<'_> {
             equilibria: vec![],
             curves: vec![],
             stable_motions: None,
+            counters: vec![],
+            modes: self.modes.as_ref().map_or(vec![], |modes| modes.values_of_states(&self.states)),
             sparse: vec![],
             exhausted,
             complete: !question.interrupt.is_requested(),

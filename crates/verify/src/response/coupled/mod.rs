@@ -13,6 +13,7 @@
 //! - `problem`: the equations with numbers for all parameters but one, and the maps of a period.
 //! - `flow`: the motion with its variations by Runge-Kutta; `scaled_rates`: its rates as they are integrated.
 //! - `state_jumps`: walls and events; `surfaces`: rates that jump, and where they do; `sliding`: the motion across jumps, with sticking.
+//! - `counters`: states that only count, which are left out; `event_modes`: states that change at events alone.
 //! - `sections`: the phases at which periods with impacts or events begin.
 //! - `starts`: the motions from which branches of a driven system start; `guesses`: those of one
 //!   harmonic.
@@ -29,10 +30,12 @@
 
 mod branches;
 mod changes;
+mod counters;
 mod criticality;
 mod curves;
 mod cycles;
 mod equilibria;
+mod event_modes;
 mod flow;
 mod grazing;
 mod guesses;
@@ -50,6 +53,7 @@ mod wave;
 use super::{ResponseDiagram, ResponseError, ResponseRequest};
 use crate::coupled::CoupledEquations;
 use branches::Known;
+use counters::{Counters, RequestWithoutCounters};
 use problem::{CoupledProblem, Kind};
 
 /// Computes and verifies all steady states that are found.
@@ -60,7 +64,24 @@ pub(super) fn respond(
     question: &ResponseRequest,
     equations: &CoupledEquations,
 ) -> Result<ResponseDiagram, ResponseError> {
-    let problem = CoupledProblem::new(question, equations)?;
+    match RequestWithoutCounters::new(question, equations)? {
+        None => respond_without_counters(question, equations, None),
+        Some(RequestWithoutCounters { request, equations, counters }) => {
+            let names = counters.names.clone();
+            let response = respond_without_counters(&request, &equations, Some(counters))?;
+            Ok(ResponseDiagram { question: question.clone(), counters: names, ..response })
+        }
+    }
+}
+
+/// The steady states of equations all of whose states belong to the motion, with what counts beside them.
+fn respond_without_counters(
+    question: &ResponseRequest,
+    equations: &CoupledEquations,
+    counters: Option<Counters>,
+) -> Result<ResponseDiagram, ResponseError> {
+    let mut problem = CoupledProblem::new(question, equations)?;
+    problem.counters = counters;
     if question.along.is_some() {
         curves::check(&problem)?;
     }

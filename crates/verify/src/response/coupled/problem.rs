@@ -12,12 +12,15 @@
 //! Munoz-Almaraz and others, *Physica D* 181 (2003) 1). Without a drive a motion may begin anywhere
 //! on itself: it begins where the rate of one state is zero, at a turn of it.
 
+use std::borrow::Cow;
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::counters::Counters;
+use super::event_modes::EventModes;
 use super::flow::{Encounters, Flow, FlowImage, TOLERANCE};
 use super::state_jumps::{StateJumps, angles, drive_of, flow_in_phase};
 use super::surfaces::largest;
@@ -130,8 +133,14 @@ pub(super) struct CoupledProblem<'a> {
     pub(super) angles: Vec<usize>,
     /// Whether a motion was met in which dry friction holds everything.
     pub(super) rests: Cell<bool>,
+    /// The number of periods of the drive after which a simulation was seen to repeat itself.
+    pub(super) repeats: Cell<Option<usize>>,
     /// The energy of a free motion without damping, and the place of rest from which it is counted.
     pub(super) energy: Option<(Energy, Vec<f64>)>,
+    /// The states that change at events alone, among finitely many values.
+    pub(super) modes: Option<EventModes>,
+    /// The states that only count, which are not among these states.
+    pub(super) counters: Option<Counters>,
 }
 
 /// A value of the parameter with which nothing cancels; every motion has its own.
@@ -226,7 +235,10 @@ impl<'a> CoupledProblem<'a> {
         let mut problem = Self {
             question,
             energy: None,
+            modes: EventModes::new(&states, &right, &events),
+            counters: None,
             rests: Cell::new(false),
+            repeats: Cell::new(None),
             angles: angles(&states, &right, &flow_events, parameter, equations.coordinates.len())?,
             smooth: !right.iter().any(Expr::contains_corner),
             kind,
@@ -414,11 +426,35 @@ impl<'a> CoupledProblem<'a> {
         parameter: f64,
         scale: &[f64],
     ) -> Option<Vec<f64>> {
+        let start = &*self.with_modes(start);
         let sizes = self.sizes_of_start(start, scale);
         let Kind::Driven(_) = self.kind else {
             return self.in_time.end(start, phases, parameter, &sizes);
         };
         self.in_phase.as_ref()?.end(start, phases, parameter, &sizes)
+    }
+
+    /// The start with values that the modes have.
+    fn with_modes<'b>(&self, start: &'b [f64]) -> Cow<'b, [f64]> {
+        match &self.modes {
+            Some(modes) => Cow::Owned(modes.nearest(start)),
+            None => Cow::Borrowed(start),
+        }
+    }
+
+    /// The image of a motion after which the modes are what they were at its start, as a function that has no other
+    /// value of them beside; `None` if they are not.
+    fn closed_modes(&self, mut image: FlowImage, start: &[f64]) -> Option<FlowImage> {
+        let Some(modes) = &self.modes else { return Some(image) };
+        if !modes.agree(image.end.as_slice(), start) {
+            return None;
+        }
+        for index in modes.indices() {
+            image.end[*index] = start[*index];
+            image.by_start.row_mut(*index).fill(0.0);
+            image.by_parameter[*index] = 0.0;
+        }
+        Some(image)
     }
 
     fn driven_image(
@@ -428,10 +464,12 @@ impl<'a> CoupledProblem<'a> {
         scale: &[f64],
         section: f64,
     ) -> Option<PeriodImage<Course>> {
+        let start = &*self.with_modes(start);
         let sizes = self.sizes_of_start(start, scale);
         let phases = [section, section + TAU];
+        let image = self.in_phase.as_ref()?.image(start, phases, parameter, &sizes)?;
         let FlowImage { end, by_start, by_parameter, travel, encounters } =
-            self.in_phase.as_ref()?.image(start, phases, parameter, &sizes)?;
+            self.closed_modes(image, start)?;
         let path = Course { travel, monodromy: by_start.clone(), encounters, section };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
@@ -448,8 +486,10 @@ impl<'a> CoupledProblem<'a> {
         if !(period > 0.0 && period.is_finite()) {
             return None;
         }
+        let start = &*self.with_modes(start);
         let sizes = self.sizes_of_start(start, scale);
         let image = self.in_time.image(start, [0.0, period], parameter, &sizes)?;
+        let image = self.closed_modes(image, start)?;
         let begin = self.in_time.linearised(start, 0.0, parameter);
         let flow = self.in_time.rates_at(image.end.as_slice(), 0.0, parameter);
         let path = Course {

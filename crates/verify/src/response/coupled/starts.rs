@@ -109,12 +109,15 @@ impl CoupledProblem<'_> {
         let largest = if largest > 0.0 { largest } else { 1.0 };
         let factor = SIZES[0] * (SIZES[1] / SIZES[0]).powf(spread(index, 0));
         let omega = self.frequency_at(parameter) * self.question.periods as f64;
-        (0..self.states.len())
-            .map(|state| {
-                let own = largest * factor * (2.0 * spread(index, state + 1) - 1.0);
-                if state < n { own } else { own * omega }
-            })
-            .collect()
+        let own = |state: usize| {
+            let own = largest * factor * (2.0 * spread(index, state + 1) - 1.0);
+            if state < n { own } else { own * omega }
+        };
+        let mut state: Vec<f64> = (0..self.states.len()).map(own).collect();
+        if let Some(modes) = &self.modes {
+            modes.set(&mut state, index);
+        }
+        state
     }
 
     /// The values of the parameter at which something is done, in the middle of equal parts of the
@@ -128,6 +131,7 @@ impl CoupledProblem<'_> {
     pub(super) fn driven_response(&self) -> Result<(ResponseDiagram, Known), ResponseError> {
         let mut known = self.driven_branches(false);
         if known.branches.is_empty() {
+            self.look_for_repeats();
             return Err(self.nothing_found(SeedSearch::default()));
         }
         let (simulated, elsewhere) = match self.undamped {
@@ -204,6 +208,19 @@ impl CoupledProblem<'_> {
         known
     }
 
+    /// Looks whether a long simulation in the middle of the range repeats itself after some periods of the drive,
+    /// where no motion was found.
+    fn look_for_repeats(&self) {
+        if self.undamped || self.question.interrupt.is_requested() || self.is_exhausted() {
+            return;
+        }
+        let [low, high] = self.question.range;
+        let rest = vec![0.0; self.states.len()];
+        if let Some(settled) = self.settle(rest.clone(), 0.5 * (low + high), &rest, SETTLING[1]) {
+            self.repeats.set(settled.periods.map(|count| count * self.question.periods));
+        }
+    }
+
     /// The error where no motion was found.
     pub(super) fn nothing_found(&self, tried: SeedSearch) -> ResponseError {
         let parameter = self.question.parameter;
@@ -227,6 +244,7 @@ impl CoupledProblem<'_> {
                 parameter,
                 at: 0.5 * (self.question.range[0] + self.question.range[1]),
                 undamped: self.undamped,
+                repeats: self.repeats.get(),
             },
         }
     }

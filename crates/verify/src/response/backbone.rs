@@ -82,10 +82,16 @@ pub fn backbones(
     Ok(curves)
 }
 
-/// The oscillator without damping and drive; `None` if its force has no such parts.
+/// The oscillator without damping and drive; `None` if its force has no such parts. Of a contact whose force
+/// depends on place and velocity in one term, as `K*p^n*max(1 + lambda*x', 0)`, its force at rest is left.
 pub(super) fn free_oscillator(oscillator: &Oscillator) -> Option<Oscillator> {
     let parts = oscillator.parts().ok()?;
-    let force = Expr::sum([parts.restoring, parts.inertia]);
+    let (place, velocity) = (oscillator.coordinate, oscillator.velocity());
+    let at_rest = |term: &Expr| {
+        term.contains(place).then(|| term.substitute(velocity, &Expr::zero()).ok())?
+    };
+    let held: Vec<Expr> = parts.damping.terms().iter().filter_map(at_rest).collect();
+    let force = Expr::sum([vec![parts.restoring, parts.inertia], held].concat());
     Some(Oscillator { force, ..oscillator.clone() })
 }
 

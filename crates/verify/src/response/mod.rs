@@ -529,11 +529,32 @@ pub fn respond(question: &ResponseRequest) -> Result<ResponseDiagram, ResponseEr
                 .map_err(|error| ResponseError::Rates(error.to_string()))?;
             coupled::respond(question, &equations)
         }
+        Equations::One(oscillator) if PreparedRequest::has_steps_in_place(question, oscillator) => {
+            match respond_across_steps(question, oscillator) {
+                Ok(response) => Ok(response),
+                Err(_) => respond_in_plane(question, oscillator),
+            }
+        }
         Equations::One(oscillator) => {
             let (covered, left_out) = covered_part(question, oscillator)?;
             Ok(respond_in_plane(&covered, oscillator)?.with_sparse(left_out))
         }
     }
+}
+
+/// The response of a single coordinate whose force steps where it comes to places, as that of a spring with a
+/// dashpot: followed as several coordinates are, from step to step with the variations.
+fn respond_across_steps(
+    question: &ResponseRequest,
+    oscillator: &Oscillator,
+) -> Result<ResponseDiagram, ResponseError> {
+    let equations = CoupledEquations::new(question.equations.sides())
+        .map_err(|error| ResponseError::Rates(error.to_string()))?;
+    let response = coupled::respond(question, &equations)?;
+    let points = response.branches.iter().flat_map(|branch| &branch.points);
+    let amplitude = points.map(|point| point.amplitude).fold(0.0, f64::max);
+    let backbone = PreparedRequest::new(question, oscillator)?.backbones(amplitude)?;
+    Ok(ResponseDiagram { backbone, ..response })
 }
 
 /// A request for the part of the range that a search covers, with the parts that are left out: there the

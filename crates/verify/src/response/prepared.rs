@@ -7,7 +7,7 @@
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
-use super::backbone::backbones;
+use super::backbone::{BackbonePoint, backbones};
 use super::balance::DrivenBalance;
 use super::bifurcation::{self, BifurcationKind};
 use super::branches::largest;
@@ -72,6 +72,29 @@ impl<'a> PreparedRequest<'a> {
         let period_series = shot.then(|| PeriodSeries::new(&driven)).flatten();
         let asked = Self { question, oscillator, driven, period_series, tried: Cell::default() };
         asked.has_frequency()
+    }
+
+    /// Whether something drives the motion, and its force jumps where it comes to places, whatever the velocity
+    /// there, and nowhere else.
+    pub(super) fn has_steps_in_place(
+        question: &'a ResponseRequest,
+        oscillator: &Oscillator,
+    ) -> bool {
+        let Ok(Self { driven, .. }) = Self::new(question, oscillator) else {
+            return false;
+        };
+        let is_place = |index: usize| driven.normal(index)[1] == 0.0;
+        !driven.self_excited && driven.jumps() > 0 && (0..driven.jumps()).all(is_place)
+    }
+
+    /// The backbones up to an amplitude a little above that of a response.
+    pub(super) fn backbones(
+        &self,
+        amplitude: f64,
+    ) -> Result<Vec<Vec<BackbonePoint>>, ResponseError> {
+        let by_series = !self.driven.is_balanced();
+        let how = (MOST_HARMONICS, by_series || self.period_series.is_some());
+        backbones(&self.oscillator, &self.driven, how, self.question.range, 1.15 * amplitude)
     }
 
     /// The response by shooting: harmonics are only output.

@@ -182,9 +182,18 @@ impl CoupledProblem<'_> {
             None => branch,
         };
         let branch = self.cut_at_image(branch, &known.scale);
+        if branch.orbits.is_empty() {
+            return;
+        }
         // Beside a crossing the orbit may lie before the first point of the branch that it belongs to.
         let middle = &branch.orbits[branch.orbits.len() / 2].clone();
-        if branch.orbits.len() > 2 && self.is_known(middle, known) {
+        let [low, high] = self.question.range;
+        let is_near =
+            |bound: f64, orbit: &Orbit| (orbit.parameter() - bound).abs() <= 1e-9 * (high - low);
+        let is_at_bound = [low, high]
+            .iter()
+            .any(|bound| branch.orbits.iter().all(|orbit| is_near(*bound, orbit)));
+        if (branch.orbits.len() > 2 || is_at_bound) && self.is_known(middle, known) {
             return;
         }
         let again = self.reentries(&branch, &known.scale);
@@ -431,6 +440,10 @@ impl CoupledProblem<'_> {
             },
             OrbitBranchEnd::Interrupted => BranchEnd::Interrupted,
         });
+        // A start on a bound of the range may be followed away from it.
+        let [low, high] = limits.range;
+        let rounding = 1e-9 * (high - low);
+        points.retain(|orbit| (low - rounding..=high + rounding).contains(&orbit.parameter()));
         OrbitBranch { orbits: points, ends, mirrored: false, anchor }
     }
 

@@ -524,4 +524,39 @@ mod tests {
         let end = flow.end(&[1.0, 1.0], [0.0, t], p, &[1.0, 1.0]).expect("an end");
         assert!((end[0] / exact(p, t) - 1.0).abs() < 1e-11);
     }
+
+    /// A mass with the acceleration 1 away from a spring with a dashpot at x = 0 that pulls, which it touches with
+    /// the speed v: in contact x = 1/K + exp(-b t) (C cos(w t) + S sin(w t)), until x = 0.
+    #[test]
+    fn a_contact_of_any_depth_has_its_closed_form() {
+        let (stiffness, damping) = (1e4_f64, 20.0);
+        let names: Vec<Symbol> = vec!["x".into(), "v".into()];
+        let right = ["v", "1 - H(-x)*(10000*x + 20*v)"];
+        let right = right.map(|text| text.parse::<Expr>().expect(text));
+        let flow = Flow::new(&names, "t".into(), &right, "p".into(), &[]).expect("a flow");
+        let (b, w) = (0.5 * damping, (stiffness - 0.25 * damping * damping).sqrt());
+        for speed in [1e-4_f64, 1e-3, 3e-3, 0.01, 0.03, 0.1, 1.0] {
+            let contact = |t: f64| {
+                let (cosine, sine) = (-1.0 / stiffness, (-b / stiffness - speed) / w);
+                let (s, c) = (w * t).sin_cos();
+                let decay = (-b * t).exp();
+                let x = 1.0 / stiffness + decay * (cosine * c + sine * s);
+                (x, decay * ((w * sine - b * cosine) * c - (w * cosine + b * sine) * s))
+            };
+            let step = 1e-4 * speed.min(1.0 / w);
+            let back = (2..1_000_000).find(|k| contact(f64::from(*k) * step).0 > 0.0);
+            let back = f64::from(back.expect("an end"));
+            let ends = [(back - 1.0) * step, back * step];
+            let end = crate::numeric::ode::root::find_root(|t| contact(t).0, ends[0], ends[1]);
+            let end = end.expect("a root");
+            let leaving = contact(end).1;
+            // A time of one before the touch and behind the contact.
+            let start = [speed + 0.5, -speed - 1.0];
+            let found = flow.end(&start, [0.0, 2.0 + end], 0.0, &[1.0, 1.0]).expect("a run");
+            let expected = [leaving + 0.5, leaving + 1.0];
+            for (found, expected) in found.iter().zip(expected) {
+                assert!((found - expected).abs() < 1e-9, "{speed}: {found:?}, {expected}");
+            }
+        }
+    }
 }

@@ -18,6 +18,9 @@ impl EventRun<'_> {
             on.push(index);
         } else {
             self.sides[index] = -self.sides[index];
+            // In a stiff contact a step as long as those before it is rejected, but its states would count as
+            // bounds of the motion.
+            self.next_step = 0.0;
         }
         self.find_held(self.with_dependent(on), None)?;
         let behind = self.rates();

@@ -422,6 +422,9 @@ fn refused(error: ResponseError) -> Failure {
             Some(format!("add {}", values_of(names)))
         }
         ResponseError::NoParameter { known, .. } => known.first().map(|name| format!("--vary {name}=FROM:TO")),
+        ResponseError::CountsAndActs { state, .. } => Some(format!(
+            "a mode has finitely many values, such as {state} = 1 - {state}; a number of events stands in no force and no condition"
+        )),
         ResponseError::OnlyCounts { .. } => Some("vary a parameter of a force, a condition or another state".to_owned()),
         ResponseError::Given(name) => Some(format!("leave out its value, or vary another parameter than {name}")),
         ResponseError::Frequency { parameter, .. } => {

@@ -67,6 +67,10 @@ fn events_that_only_count_are_left_out() {
         assert!((point.amplitude / exact - 1.0).abs() < 1e-9, "{point:?}");
         assert_eq!(point.counted.len(), 2);
     }
+    // A count that acts on the motion goes on for ever.
+    let acts = asked("x'' + x'/10 + x + m = cos(w*t); m' = 0", &["x > 0: m = m + 1"], 1);
+    let refused = respond(&acts).expect_err("no motion");
+    assert!(matches!(refused, ResponseError::CountsAndActs { .. }), "{refused}");
     // A parameter that stands nowhere else changes nothing.
     let asked = asked("x'' + x'/10 + x = cos(t); m' = 0", &["x > 0: m = m + w"], 1);
     let refused = respond(&asked).expect_err("no parameter");

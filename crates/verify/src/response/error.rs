@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::MOST_HARMONICS;
 use crate::decimal::decimal;
-use crate::expr::{EvaluationError, ExprError};
+use crate::expr::{EvaluationError, Expr, ExprError};
 use crate::oscillator::OscillatorError;
 use crate::symbol::Symbol;
 use crate::wall::WallError;
@@ -82,6 +82,17 @@ pub enum ResponseError {
         parameter: Symbol,
         /// The states that only count.
         counters: Vec<Symbol>,
+    },
+    /// A state that acts on the motion, and is set at an event to what it was and a constant more.
+    #[error(
+        "an event sets `{state} = {value}`, each time to another value, and `{state}` acts on the motion: no motion with this event repeats itself, and \
+         beside one without it there is another for every value of `{state}`"
+    )]
+    CountsAndActs {
+        /// The state.
+        state: Symbol,
+        /// What it is set to.
+        value: Box<Expr>,
     },
     /// The parameter that varies has a value.
     #[error("`{0}` varies and is given a value as well")]

@@ -13,7 +13,7 @@
 use std::collections::BTreeMap;
 
 use crate::event::StateEvent;
-use crate::expr::Expr;
+use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;
 
 /// Largest number of values that modes have together.
@@ -123,6 +123,28 @@ impl EventModes {
         };
         self.indices.iter().enumerate().map(of_mode).collect()
     }
+}
+
+/// A state without a rate that an event sets to what it was and a constant more, with that value; `None` without one.
+///
+/// # Errors
+/// A failed step of algebra.
+pub(super) fn endless(
+    states: &[Symbol],
+    right: &[Expr],
+    events: &[StateEvent],
+) -> Result<Option<(Symbol, Expr)>, ExprError> {
+    let is_at_rest = |name: &Symbol| {
+        states.iter().zip(right).any(|(state, rate)| state == name && rate.is_zero())
+    };
+    for (state, value) in events.iter().flat_map(|event| &event.assignments) {
+        let more = (value - &Expr::from(*state)).expand()?;
+        let is_constant = !states.iter().any(|name| more.contains(*name));
+        if is_at_rest(state) && is_constant && !more.contains(Symbol::new("t")) && !more.is_zero() {
+            return Ok(Some((*state, value.clone())));
+        }
+    }
+    Ok(None)
 }
 
 /// All values of the modes to which the events lead from these of each; `None` if they are too many.

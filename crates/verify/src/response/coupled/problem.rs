@@ -20,7 +20,7 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DVector};
 
 use super::counters::Counters;
-use super::event_modes::EventModes;
+use super::event_modes::{self, EventModes};
 use super::flow::{Encounters, Flow, FlowImage, TOLERANCE};
 use super::state_jumps::{StateJumps, angles, drive_of, flow_in_phase};
 use super::surfaces::largest;
@@ -255,6 +255,11 @@ impl<'a> CoupledProblem<'a> {
             undamped,
         };
         problem.has_frequency()?;
+        let endless = event_modes::endless(&problem.states, &problem.right, &problem.events)?;
+        let is_angle = |state: Symbol| problem.angles.iter().any(|i| problem.states[*i] == state);
+        if let Some((state, value)) = endless.filter(|(state, _)| !is_angle(*state)) {
+            return Err(ResponseError::CountsAndActs { state, value: Box::new(value) });
+        }
         problem.energy = energy.and_then(|energy| Some((energy, problem.rest()?)));
         Ok(problem)
     }

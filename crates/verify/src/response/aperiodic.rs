@@ -151,9 +151,11 @@ fn returns_after(states: &[Vec<f64>], angles: &[usize]) -> Option<(usize, i64)> 
     /// The largest number, and that of states which are compared with those so many periods before.
     const LONGEST: usize = 64;
     const STATES: usize = 16;
-    /// Distance, in the sizes of the states, at which they are the same, and at which they come to be if it
-    /// has fallen by half within half of all periods.
-    const SAME: f64 = 1e-6;
+    /// Distance, in the sizes of the states, at which they are the same, if it is not larger over many times as many
+    /// periods, as where two frequencies are nearly in step; and at which they come to be if it has fallen by half
+    /// within half of all periods.
+    const SAME: f64 = 1e-4;
+    const MANY: usize = 128;
     const NEAR: f64 = 1e-3;
     let mut sizes = sizes_of(states);
     for angle in angles {
@@ -174,7 +176,8 @@ fn returns_after(states: &[Vec<f64>], angles: &[usize]) -> Option<(usize, i64)> 
     let (half, end) = (states.len() / 2, states.len());
     let repeats = |count: &usize| {
         let now = apart(end, *count);
-        now <= SAME || (now <= NEAR && now <= 0.5 * apart(half, *count))
+        let comes_to_be = now <= NEAR && now <= 0.5 * apart(half, *count);
+        comes_to_be || (now <= SAME && apart(end, MANY - MANY % count) <= 2.0 * SAME)
     };
     let count = (1..=LONGEST).find(repeats)?;
     let ways = angles.iter().map(|angle| states[end - 1][*angle] - states[end - 1 - count][*angle]);

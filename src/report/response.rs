@@ -501,11 +501,16 @@ fn changes(response: &ResponseDiagram) -> Option<Vec<Block<'static>>> {
     }
     let name = response.question.parameter.name();
     let has_frequency = response.self_excited && !are_modes(response);
+    // A motion at even multiples of the frequency alone has an amplitude of rounding where others branch off.
+    const ROUNDING: f64 = 1e-7;
     let row = |bifurcation: &crate::response::Bifurcation| {
         let mut row = vec![
             coupled::kind_in_words(bifurcation.kind, bifurcation.criticality),
             decimal(bifurcation.parameter),
-            decimal(bifurcation.amplitude),
+            match bifurcation.amplitude < ROUNDING * bifurcation.peak {
+                true => "0".to_owned(),
+                false => decimal(bifurcation.amplitude),
+            },
             decimal(bifurcation.peak),
             (bifurcation.branch + 1).to_string(),
         ];

@@ -25,7 +25,7 @@ const COUNT_COLUMNS: usize = 9;
 
 /// An amplitude below this part of the largest peak is that of rounding, and printed as zero: of a
 /// coordinate that moves at even multiples of the frequency alone, as one that a square drives.
-const ROUNDING: f64 = 1e-12;
+const ROUNDING: f64 = 1e-9;
 
 /// Whether the equations are coupled, or of first order.
 pub(super) fn is_coupled(response: &ResponseDiagram) -> bool {

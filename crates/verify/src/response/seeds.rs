@@ -10,9 +10,10 @@ use super::continuation::{BranchNode, BranchPath};
 use super::coverage::Coverage;
 use super::driven::Driven;
 use super::free_swing::FreeSwings;
+use super::jump::{StopCondition, follow};
 use super::stability::{
-    MotionGuess, Settled, SettlingStart, SimulationBudget, TrueMotion, first_harmonic,
-    half_of_peak_to_peak, periodic_motions, settle_together,
+    MotionGuess, Settled, SettlingStart, SimulationBudget, TOLERANCE, TrueMotion, first_harmonic,
+    half_of_peak_to_peak, options, periodic_motions, settle_together,
 };
 use super::{Elsewhere, PreparedRequest, ResponseError};
 use super::{melnikov, one_harmonic};
@@ -138,9 +139,10 @@ impl PreparedRequest<'_> {
         }
     }
 
-    /// Repeats the search from all around, each time from other places, until nothing new is found. The
-    /// branches through the motions that were new, those after a number of motions, are followed first:
-    /// simulations end where they come to a known branch.
+    /// Repeats the search from all around, each time from other places, until nothing new is found; where
+    /// simulations settle on motions of more periods or not at all, the largest number of times, since small
+    /// basins are frequent there. The branches through the motions that were new, those after a number of
+    /// motions, are followed first: simulations end where they come to a known branch.
     fn search_again(
         &self,
         balance: &DrivenBalance,
@@ -150,19 +152,22 @@ impl PreparedRequest<'_> {
         found: &mut Search,
     ) {
         /// The number of searches, the first one included.
-        const ROUNDS: usize = 3;
+        const ROUNDS: usize = 4;
         for round in 1..ROUNDS {
             let new = &found.motions.seeds[before..];
-            if new.is_empty() || self.question.interrupt.is_requested() {
-                return;
-            }
             let known = branches.len();
-            *branches = self.branches_through(balance, new, found.size, branches);
-            if branches.len() == known {
+            if !new.is_empty() {
+                *branches = self.branches_through(balance, new, found.size, branches);
+            }
+            let has_small_basins = !found.motions.elsewhere.is_empty();
+            let is_larger = branches.len() > known;
+            if !(is_larger || has_small_basins) || self.question.interrupt.is_requested() {
                 return;
             }
             before = found.motions.seeds.len();
-            self.begin_round(balance, branches, values, found);
+            if is_larger {
+                self.begin_round(balance, branches, values, found);
+            }
             self.question.progress.begin(values.len() * RADII.len() * self.speeds_of_starts());
             self.search_around(values, round, found.size, found);
         }
@@ -213,6 +218,53 @@ impl PreparedRequest<'_> {
         [stable, strayed]
     }
 
+    /// The stable motions near the mirror images, half a period of the drive later, of these, unless they are among
+    /// them: a force that is nearly odd has two motions where an odd one has a motion and its image.
+    fn near_mirror_images(&self, stable: &[(f64, TrueMotion)]) -> Vec<(f64, TrueMotion)> {
+        /// Relative distance of motions that are one.
+        const SAME: f64 = 1e-6;
+        let [low, high] = self.question.range;
+        if self.is_odd(0.5 * (low + high)) {
+            return vec![];
+        }
+        let guess = |(parameter, motion): &(f64, TrueMotion)| {
+            let drive = self.driven.frequency_at(*parameter) * self.question.periods as f64;
+            let half = StopCondition::Time(0.5 * TAU / drive);
+            let settings = options(motion.peak, TOLERANCE);
+            let [x, v, ..] = follow(&self.driven, motion.start, *parameter, half, &settings)?.end;
+            Some(MotionGuess { start: [-x, -v], parameter: *parameter, size: motion.peak })
+        };
+        let guesses: Vec<MotionGuess> = stable.iter().filter_map(guess).collect();
+        let truths = periodic_motions(&self.driven, &guesses);
+        let mut found: Vec<(f64, TrueMotion)> = vec![];
+        for (guess, truth) in guesses.iter().zip(truths) {
+            let Some(truth) = truth.filter(|truth| truth.floquet.largest() < 1.0) else { continue };
+            let is_same = |(parameter, known): &&(f64, TrueMotion)| {
+                let apart = [0, 1].map(|index| (known.start[index] - truth.start[index]).abs());
+                *parameter == guess.parameter && apart[0].max(apart[1]) <= SAME * truth.peak
+            };
+            if stable.iter().chain(&found).find(is_same).is_none() {
+                found.push((guess.parameter, truth));
+            }
+        }
+        found
+    }
+
+    /// Whether the force changes its sign with those of position and velocity half a period of the drive later, by
+    /// values at places that are not special.
+    fn is_odd(&self, parameter: f64) -> bool {
+        const PLACES: u32 = 6;
+        const ROUNDING: f64 = 1e-12;
+        let half = 0.5 * TAU / self.question.periods as f64;
+        (0..PLACES).all(|place| {
+            let [x, v] = [0.37, 0.83].map(|part| 2.0 * (part * f64::from(place + 1)).fract() - 1.0);
+            let theta = 1.1 * f64::from(place);
+            let force = self.driven.force(&[x, v, theta, parameter]);
+            let mirrored = self.driven.force(&[-x, -v, theta + half, parameter]);
+            (force + mirrored).abs() <= ROUNDING * (force.abs() + 1.0)
+        })
+    }
+
     /// Takes the stable motions of branches for known, and those to which iterations strayed for new ones.
     fn begin_round(
         &self,
@@ -221,7 +273,8 @@ impl PreparedRequest<'_> {
         values: &[f64],
         found: &mut Search,
     ) {
-        let [stable, strayed] = self.stable_on(balance, branches, values);
+        let [stable, mut strayed] = self.stable_on(balance, branches, values);
+        strayed.extend(self.near_mirror_images(&stable));
         found.stable = stable;
         let begin = |(parameter, motion): &(f64, TrueMotion)| PlannedSimulation {
             seed: None,
@@ -355,7 +408,8 @@ impl PreparedRequest<'_> {
                 let turn: f64 = TURNS.iter().zip(turns).map(|(part, count)| part * count).sum();
                 let (sine, cosine) = (TAU * turn).sin_cos();
                 let size = RADII[ring] * size;
-                let speed = match speed {
+                // Another round has the other speed first.
+                let speed = match (speed + round) % 2 {
                     0 => size * omega,
                     _ => swing_speed(&self.driven, parameter, size),
                 };

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from .._answer import Answer
-from .._document import Document, mapped, several
+from .._document import Document, mapped, one_of, several
 from .common import Constant, Event, Wall
 
 
@@ -35,6 +35,8 @@ class ResponsePoint(Document):
             coordinate.
         state: The positions of all coordinates at t = 0, then their rates. Left out for one
             coordinate.
+        counted: The value after a period of each state that only counts and begins the period at
+            zero. Left out where there is none.
         energy: The energy of a free motion without damping over that of rest. Left out where it
             is not known.
     """
@@ -52,6 +54,7 @@ class ResponsePoint(Document):
     phases: dict[str, float] | None
     peaks: dict[str, float] | None
     state: tuple[float, ...] | None
+    counted: tuple[float, ...] | None
     energy: float | None
 
 
@@ -69,9 +72,10 @@ ResponsePoint.FIELDS = (
     ("phases", "phases", dict),
     ("peaks", "peaks", dict),
     ("state", "state", tuple),
+    ("counted", "counted", tuple),
     ("energy", "energy", None),
 )
-ResponsePoint.OPTIONAL = frozenset(['amplitudes', 'energy', 'peaks', 'phases', 'state'])
+ResponsePoint.OPTIONAL = frozenset(['amplitudes', 'counted', 'energy', 'peaks', 'phases', 'state'])
 
 
 #: The side on which motions come off at a bifurcation, and so whether they are stable beside it.
@@ -416,13 +420,91 @@ SimulatedPoint.FIELDS = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class ChaoticMotion(Document):
+    """A motion from which those nearby part exponentially.
+
+    Attributes:
+        lyapunov_exponent: The largest Lyapunov exponent, per unit of time.
+        lyapunov_error: Its standard error.
+    """
+
+    lyapunov_exponent: float
+    lyapunov_error: float
+
+
+ChaoticMotion.FIELDS = (
+    ("lyapunov_exponent", "lyapunov_exponent", None),
+    ("lyapunov_error", "lyapunov_error", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class QuasiPeriodicMotion(Document):
+    """A motion of two frequencies: that of the drive, or of so many of its periods as a motion takes,
+    and another.
+
+    Attributes:
+        second_frequency: The angular frequency of the strongest part that is no harmonic of the
+            first.
+    """
+
+    second_frequency: float
+
+
+QuasiPeriodicMotion.FIELDS = (
+    ("second_frequency", "second_frequency", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RotatingMotion(Document):
+    """A motion that goes round: it repeats itself but for whole turns of 2 pi.
+
+    Attributes:
+        turns: The number of turns, negative where the angle decreases; of several angles, of that
+            with the most of them.
+        in_periods: The number of periods of the motion that they take.
+    """
+
+    turns: int
+    in_periods: int
+
+
+RotatingMotion.FIELDS = (
+    ("turns", "turns", None),
+    ("in_periods", "in_periods", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class UnsettledMotion(Document):
+    """A motion that neither repeats itself nor is quasi-periodic or chaotic, as far as it was
+    followed: it may still be on its way.
+
+    Attributes:
+        followed_periods: The number of periods of the motion over which it was followed further.
+    """
+
+    followed_periods: int
+
+
+UnsettledMotion.FIELDS = (
+    ("followed_periods", "followed_periods", None),
+)
+
+
+#: The course of a motion that does not repeat itself.
+AperiodicMotion: TypeAlias = QuasiPeriodicMotion | ChaoticMotion | RotatingMotion | UnsettledMotion
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class ElsewherePoint(Document):
     """A simulation that has settled elsewhere.
 
     Attributes:
         parameter: The value of the parameter that varies.
         periods: After how many periods of the motion it repeats itself, 1 where harmonic balance
-            has not come to it; null where it does not within eight.
+            has not come to it; null where it does not.
         drive_periods: After how many periods of the drive it repeats itself; null where it does
             not.
         start: Position and velocity at t = 0 or a whole number of periods later, from where it
@@ -431,6 +513,8 @@ class ElsewherePoint(Document):
             one coordinate.
         amplitude: The amplitude of the first harmonic of a period of the motion from there.
         peak: Half of the way from the lowest to the highest point of this period.
+        aperiodic: How it goes on where it does not repeat itself; left out where it does, and
+            where it cannot be followed.
     """
 
     parameter: float
@@ -440,6 +524,7 @@ class ElsewherePoint(Document):
     state: tuple[float, ...] | None
     amplitude: float
     peak: float
+    aperiodic: AperiodicMotion | None
 
 
 ElsewherePoint.FIELDS = (
@@ -450,8 +535,9 @@ ElsewherePoint.FIELDS = (
     ("state", "state", tuple),
     ("amplitude", "amplitude", None),
     ("peak", "peak", None),
+    ("aperiodic", "aperiodic", one_of(QuasiPeriodicMotion, ChaoticMotion, RotatingMotion, UnsettledMotion)),
 )
-ElsewherePoint.OPTIONAL = frozenset(['state'])
+ElsewherePoint.OPTIONAL = frozenset(['aperiodic', 'state'])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -488,7 +574,12 @@ class Response(Answer):
     Attributes:
         schema: The kind of document.
         equation: The equation of motion; coupled equations are separated by `;`.
-        coordinates: The coordinates of coupled equations. Left out for one coordinate.
+        coordinates: The coordinates of coupled equations, without those that only count. Left out
+            for one coordinate.
+        counters: The states that only count: they enter neither forces nor conditions. Left out
+            where there are none.
+        modes: The values of each state that changes at events alone, among finitely many. Left
+            out where there is none.
         of: The quantity of coupled equations whose amplitude, phase and peak are listed, in the
             coordinates. Left out for one coordinate.
         parameters: The values of all other parameters.
@@ -515,8 +606,8 @@ class Response(Answer):
         impacts: The number of impacts in a period at each point of a branch, without those that
             accumulate before a rest; left out without a wall.
         events: The events, as `--event` takes them; left out without one.
-        event_counts: The number of events in a period at each point of a branch; left out without
-            an event.
+        event_counts: The number of events in a period at each point of a branch, without those
+            that set nothing but what only counts; left out without an event.
         bifurcations: Where branches change.
         equilibria: The equilibria of coupled equations that nothing drives, a branch each. Left
             out where there are none.
@@ -548,6 +639,8 @@ class Response(Answer):
     schema: Literal["lindstedt/response/1"]
     equation: str
     coordinates: tuple[str, ...] | None
+    counters: tuple[str, ...] | None
+    modes: dict[str, tuple[float, ...]] | None
     of: str | None
     parameters: dict[str, Constant]
     parameter: str
@@ -585,6 +678,8 @@ Response.FIELDS = (
     ("schema", "schema", None),
     ("equation", "equation", None),
     ("coordinates", "coordinates", tuple),
+    ("counters", "counters", tuple),
+    ("modes", "modes", mapped(tuple)),
     ("of", "of", None),
     ("parameters", "parameters", mapped(Constant.from_json)),
     ("parameter", "parameter", None),
@@ -617,4 +712,4 @@ Response.FIELDS = (
     ("sparse", "sparse", several(tuple)),
     ("complete", "complete", None),
 )
-Response.OPTIONAL = frozenset(['along', 'coordinates', 'curves_of_bifurcations', 'equilibria', 'event_counts', 'events', 'exhausted', 'impacts', 'of', 'ripple', 'sparse', 'stable_motions', 'walls'])
+Response.OPTIONAL = frozenset(['along', 'coordinates', 'counters', 'curves_of_bifurcations', 'equilibria', 'event_counts', 'events', 'exhausted', 'impacts', 'modes', 'of', 'ripple', 'sparse', 'stable_motions', 'walls'])

@@ -115,9 +115,9 @@ fn a_mode_comes_back_after_two_events() {
         let (one, other) = (matrix(1.0), matrix(1.3));
         let trace: f64 = (0..2).flat_map(|i| (0..2).map(move |j| one[i][j] * other[j][i])).sum();
         let [first, second] = point.multipliers.expect("multipliers");
-        // Variations are followed to 1e-8 of their sizes.
-        assert!(((first + second).re - trace).abs() < 1e-8, "{point:?} {trace}");
-        assert!(((first * second).re - (-0.2 * period).exp()).abs() < 1e-8, "{point:?}");
+        // A step of the variations may err by 1e-8 of their sizes.
+        assert!(((first + second).re - trace).abs() < 1e-7, "{point:?} {trace}");
+        assert!(((first * second).re - (-0.2 * period).exp()).abs() < 1e-7, "{point:?}");
         assert!(point.error.is_some_and(|error| error < 1e-8), "{point:?}");
     }
 }

@@ -381,7 +381,7 @@ impl Expr {
     ///
     /// ```
     /// # use lindstedt_expr as lindstedt;
-    /// use lindstedt::Expr;
+    /// use lindstedt::expr::Expr;
     ///
     /// assert!("x^3 - 2*sin(t)".parse::<Expr>()?.is_smooth_everywhere());
     /// assert!(!"x/(1 - x)".parse::<Expr>()?.is_smooth_everywhere());

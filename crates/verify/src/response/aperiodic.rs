@@ -200,7 +200,7 @@ fn sizes_of(states: &[Vec<f64>]) -> Vec<f64> {
 /// The angle by which a motion of two frequencies turns in a period; `None` if it is no such motion. In:
 /// its positions, [`SAMPLES`] a period.
 fn turn_of(positions: &[f64]) -> Option<f64> {
-    /// What the sum may leave, and what may be gained or lost over all periods, relative to what turns.
+    /// The largest part of a motion that the sum may leave, and the largest growth or decay over all periods.
     const LEFT: f64 = 1e-3;
     let values: Vec<f64> = positions.iter().step_by(SAMPLES).copied().collect();
     let count = values.len();

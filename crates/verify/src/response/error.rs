@@ -91,7 +91,7 @@ pub enum ResponseError {
     CountsAndActs {
         /// The state.
         state: Symbol,
-        /// What it is set to.
+        /// The value to which an event sets it.
         value: Box<Expr>,
     },
     /// The parameter that varies has a value.

@@ -4,7 +4,7 @@
 //! m' = 0;   at an event  m -> r(m)       values: all that follow from the numbers to which m is set, or from 0
 //! ```
 //!
-//! Where r depends on m, as `m = 1 - m`, nothing else fixes the values: from 0 they are 0 and 1. Where 0 stays 0, as
+//! A mode that is set from itself, as `m = 1 - m`, has the values that follow from 0: here 0 and 1. Where 0 stays 0, as
 //! for `m = -m`, they are those that follow from 1. A motion closes if its modes come back to the values that they
 //! had, and beside a motion there is none with other values: a mode has no multiplier.
 //!

@@ -29,7 +29,7 @@ pub(super) struct Table {
     shape: (usize, usize),
     places: Vec<(usize, usize)>,
     entries: CompiledList,
-    /// The same entries with memory for their values, which calls share.
+    /// All entries as one list with memory for their values, which calls share.
     prepared: RefCell<PreparedList>,
 }
 

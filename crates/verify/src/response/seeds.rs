@@ -183,8 +183,6 @@ impl PreparedRequest<'_> {
     ) -> [Vec<(f64, TrueMotion)>; 2] {
         /// The distance of a motion from its guess, in parts of its size, up to which it is on the branch.
         const NEAR: f64 = 0.1;
-        /// Relative distance of motions that are one.
-        const SAME: f64 = 1e-6;
         let guess = |(pair, parameter): (&[BranchNode], f64)| {
             let [one, other] = pair else { return None };
             let part = one.part_of_way(other, parameter)?;
@@ -205,13 +203,9 @@ impl PreparedRequest<'_> {
         let mut strayed: Vec<(f64, TrueMotion)> = vec![];
         for (guess, truth) in guesses.iter().zip(truths) {
             let Some(truth) = truth.filter(|truth| truth.floquet.largest() < 1.0) else { continue };
-            let is_same = |(parameter, known): &(f64, TrueMotion)| {
-                let apart = [0, 1].map(|index| (known.start[index] - truth.start[index]).abs());
-                *parameter == guess.parameter && apart[0].max(apart[1]) <= SAME * truth.peak
-            };
             if is_near(guess, &truth) {
                 stable.push((guess.parameter, truth));
-            } else if !strayed.iter().any(is_same) {
+            } else if !is_among(&strayed, guess.parameter, &truth) {
                 strayed.push((guess.parameter, truth));
             }
         }
@@ -221,8 +215,6 @@ impl PreparedRequest<'_> {
     /// The stable motions near the mirror images, half a period of the drive later, of these, unless they are among
     /// them: a force that is nearly odd has two motions where an odd one has a motion and its image.
     fn near_mirror_images(&self, stable: &[(f64, TrueMotion)]) -> Vec<(f64, TrueMotion)> {
-        /// Relative distance of motions that are one.
-        const SAME: f64 = 1e-6;
         let [low, high] = self.question.range;
         if self.is_odd(0.5 * (low + high)) {
             return vec![];
@@ -239,11 +231,8 @@ impl PreparedRequest<'_> {
         let mut found: Vec<(f64, TrueMotion)> = vec![];
         for (guess, truth) in guesses.iter().zip(truths) {
             let Some(truth) = truth.filter(|truth| truth.floquet.largest() < 1.0) else { continue };
-            let is_same = |(parameter, known): &&(f64, TrueMotion)| {
-                let apart = [0, 1].map(|index| (known.start[index] - truth.start[index]).abs());
-                *parameter == guess.parameter && apart[0].max(apart[1]) <= SAME * truth.peak
-            };
-            if stable.iter().chain(&found).find(is_same).is_none() {
+            let is_known = |known: &[(f64, TrueMotion)]| is_among(known, guess.parameter, &truth);
+            if !is_known(stable) && !is_known(&found) {
                 found.push((guess.parameter, truth));
             }
         }
@@ -662,6 +651,16 @@ impl PreparedRequest<'_> {
             }
         }
     }
+}
+
+/// Whether a motion is among these, each with its value of the parameter.
+fn is_among(known: &[(f64, TrueMotion)], parameter: f64, motion: &TrueMotion) -> bool {
+    /// Relative distance of motions that are one.
+    const SAME: f64 = 1e-6;
+    known.iter().any(|(own, known)| {
+        let apart = [0, 1].map(|index| (known.start[index] - motion.start[index]).abs());
+        *own == parameter && apart[0].max(apart[1]) <= SAME * motion.peak
+    })
 }
 
 /// A search for initial motions.

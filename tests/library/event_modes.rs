@@ -115,7 +115,7 @@ fn a_mode_comes_back_after_two_events() {
         let (one, other) = (matrix(1.0), matrix(1.3));
         let trace: f64 = (0..2).flat_map(|i| (0..2).map(move |j| one[i][j] * other[j][i])).sum();
         let [first, second] = point.multipliers.expect("multipliers");
-        // A step of the variations may err by 1e-8 of their sizes.
+        // Multipliers are those before the last step of Newton's method, of up to 1e-8.
         assert!(((first + second).re - trace).abs() < 1e-7, "{point:?} {trace}");
         assert!(((first * second).re - (-0.2 * period).exp()).abs() < 1e-7, "{point:?}");
         assert!(point.error.is_some_and(|error| error < 1e-8), "{point:?}");

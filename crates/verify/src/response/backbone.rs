@@ -135,6 +135,32 @@ pub(super) fn farthest_rest(driven: &Driven, parameter: f64, size: f64) -> f64 {
     zeros.fold(0.0, f64::max)
 }
 
+/// The distance from zero at which the mean force differs from its linear part by half of that: the size of
+/// motions whose frequency depends on it. Zero if there is none up to 1e4, or no linear part.
+pub(super) fn nonlinear_size(driven: &Driven, parameter: f64) -> f64 {
+    const PHASES: u32 = 8;
+    const DIFFERENCE: f64 = 0.5;
+    /// Distances in a decade, and the powers of ten of the first and the last one.
+    const EACH: i32 = 8;
+    const DECADES: [i32; 2] = [-4, 4];
+    let mean_force = driven.mean_force(parameter, PHASES);
+    let place = |index: i32| 10.0_f64.powf(f64::from(index) / f64::from(EACH));
+    let [odd, even] = [1.0, -1.0].map(|sign| {
+        let mean_force = &mean_force;
+        move |x: f64| 0.5 * (mean_force(x) - sign * mean_force(-x))
+    });
+    let [first, last] = DECADES.map(|power| power * EACH);
+    let nearest = place(first);
+    let (stiffness, offset) = (odd(nearest) / nearest, mean_force(0.0));
+    let is_nonlinear = |x: &f64| {
+        let linear = stiffness * x;
+        let differs = (odd(*x) - linear).abs().max((even(*x) - offset).abs());
+        differs >= DIFFERENCE * linear.abs()
+    };
+    let distance = (first..=last).map(place).find(is_nonlinear);
+    distance.filter(|x| *x > nearest).unwrap_or(0.0)
+}
+
 /// The points of one curve that lie in the range.
 fn curve(balance: &DrivenBalance, place: f64, range: [f64; 2], size: f64) -> Vec<BackbonePoint> {
     let mut points = Vec::new();

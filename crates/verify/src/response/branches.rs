@@ -5,7 +5,7 @@ use nalgebra::DVector;
 
 use super::balance::DrivenBalance;
 use super::continuation::{self, BranchEnd, BranchNode, BranchPath, ContinuationSettings};
-use super::seeds::Seed;
+use super::seeds::{Seed, size_of};
 use super::{MOST_BRANCHES, PreparedRequest};
 
 /// The relation of a known motion to a branch.
@@ -27,6 +27,7 @@ impl PreparedRequest<'_> {
         known: &[BranchPath],
     ) -> Vec<BranchPath> {
         let mut paths = known.to_vec();
+        let ordinary = size_of(seeds);
         for seed in seeds {
             if paths.len() >= MOST_BRANCHES || self.question.interrupt.is_requested() {
                 break;
@@ -36,7 +37,7 @@ impl PreparedRequest<'_> {
                 continue;
             };
             let walk = self.walk(
-                seeds,
+                ordinary,
                 paths
                     .iter()
                     .map(|path| largest(balance, path))

@@ -38,6 +38,7 @@
 //! by the return map of their turning points, forward and backward in time.
 
 mod aperiodic;
+mod attractors;
 pub mod backbone;
 pub mod balance;
 pub mod bifurcation;

@@ -196,14 +196,14 @@ impl<'a> PreparedRequest<'a> {
         SimulationBudget { evaluations: MOST_EVALUATIONS, interrupt: self.question.interrupt }
     }
 
-    pub(super) fn walk(&self, seeds: &[Seed], size: f64) -> ContinuationSettings {
+    pub(super) fn walk(&self, ordinary: f64, size: f64) -> ContinuationSettings {
         ContinuationSettings {
             // Motions with corners and slow motions have long series of harmonics, and other
             // criteria for their ends.
             resolved: self.question.harmonics.is_none()
                 && self.driven.smooth
                 && !self.driven.self_excited,
-            ordinary: size_of(seeds),
+            ordinary,
             range: self.question.range,
             longest: LONGEST_STEP,
             most: MOST_POINTS,
@@ -360,7 +360,8 @@ impl<'a> PreparedRequest<'a> {
         paths: &mut Vec<BranchPath>,
     ) -> (Vec<Vec<PointJudgement>>, Vec<Change>, Option<Ripple>) {
         let size = paths.iter().map(|path| largest(balance, path));
-        let walk = self.walk(seeds, size.fold(size_of(seeds), f64::max));
+        let ordinary = size_of(seeds);
+        let walk = self.walk(ordinary, size.fold(ordinary, f64::max));
         // Multipliers have a meaning only for a true motion.
         let of_true_motion = |judged: PointJudgement| judged.1.map(|truth| truth.floquet);
         let floquet = |node: &BranchNode| match node.truth {

@@ -4,47 +4,21 @@ use std::f64::consts::TAU;
 
 use nalgebra::DVector;
 
-use super::backbone::{farthest_rest, free_oscillator, places_of_rest};
+use super::backbone::{free_oscillator, places_of_rest};
 use super::balance::DrivenBalance;
-use super::continuation::{BranchNode, BranchPath};
+use super::continuation::BranchPath;
 use super::coverage::Coverage;
-use super::driven::Driven;
 use super::free_swing::FreeSwings;
-use super::jump::{StopCondition, follow};
 use super::stability::{
-    MotionGuess, Settled, SettlingStart, SimulationBudget, TOLERANCE, TrueMotion, first_harmonic,
-    half_of_peak_to_peak, options, periodic_motions, settle_together,
+    MotionGuess, Settled, SettlingStart, SimulationBudget, TrueMotion, first_harmonic,
+    half_of_peak_to_peak, periodic_motions, settle_together,
 };
 use super::{Elsewhere, PreparedRequest, ResponseError};
 use super::{melnikov, one_harmonic};
 use crate::system::LANES;
 
 /// Number of values of the parameter at which simulations begin.
-const VALUES: u32 = 5;
-
-/// Radii of the starts about the origin, relative to the largest motion, and the number of values of
-/// the parameter for each of those above at which simulations begin there: a branch apart from
-/// others may be short, but simulations from many places come to its stable motions.
-const RADII: [f64; 2] = [0.5, 1.3];
-const FINER: u32 = 5;
-
-/// The greatest speed of free motions between -size and size, of which one rests at the highest place of
-/// the potential: `sqrt(2 (max V - min V))`, V of the mean force over the drive by the trapezoidal rule.
-fn swing_speed(driven: &Driven, parameter: f64, size: f64) -> f64 {
-    const PLACES: u32 = 32;
-    const PHASES: u32 = 8;
-    let step = 2.0 * size / f64::from(PLACES);
-    let mean_force = driven.mean_force(parameter, PHASES);
-    let forces: Vec<f64> =
-        (0..=PLACES).map(|place| mean_force(f64::from(place) * step - size)).collect();
-    let (mut potential, mut least, mut greatest) = (0.0, 0.0, 0.0);
-    for pair in forces.windows(2) {
-        potential += 0.5 * (pair[0] + pair[1]) * step;
-        (least, greatest) = (potential.min(least), potential.max(greatest));
-    }
-    let speed = (2.0_f64 * (greatest - least)).sqrt();
-    if speed.is_finite() { speed } else { 0.0 }
-}
+pub(super) const VALUES: u32 = 5;
 
 /// An initial motion of a branch.
 #[derive(Clone, Debug)]
@@ -93,17 +67,15 @@ impl PreparedRequest<'_> {
         }
         let balance = DrivenBalance::new(&self.driven, harmonics);
         let values = self.values_of_search();
-        let around = if self.driven.undamped { vec![] } else { self.finer_values() };
         let covered = self.coverage_of_search();
         let added = covered.added;
-        let starts =
-            values.len() + (around.len() + added.len()) * RADII.len() * self.speeds_of_starts();
-        self.question.progress.begin(starts);
+        self.question.progress.begin(values.len() + self.simulations_of_a_round(added.len()));
         let mut found = Search {
             motions: InitialMotions { gaps: covered.gaps, ..InitialMotions::default() },
             budget: self.budget(),
             size: 0.0,
-            stable: vec![],
+            known: vec![],
+            returns: vec![],
         };
         let known = self.search_from_rest(&balance, &values, &mut found);
         self.search_from_guesses(&balance, (&values, &added), known, &mut found);
@@ -119,17 +91,7 @@ impl PreparedRequest<'_> {
             found.size = extents.fold(found.size, f64::max);
         }
         if !self.driven.undamped {
-            let before = found.motions.seeds.len();
-            self.begin_round(&balance, &branches, &around, &mut found);
-            self.search_around(&around, 0, found.size, &mut found);
-            // Motions at the added values are far smaller, or larger, than those at others.
-            for value in &added {
-                let own = found.motions.seeds.iter().filter(|seed| seed.parameter == *value);
-                let size = own.map(Seed::extent).fold(0.0, f64::max);
-                let size = if size > 0.0 { size } else { found.size };
-                self.search_around(&[*value], 0, size, &mut found);
-            }
-            self.search_again(&balance, &around, before, &mut branches, &mut found);
+            self.search_all_around(&balance, &added, &mut branches, &mut found);
         }
         found.motions.branches = branches;
         Elsewhere::sort(&mut found.motions.elsewhere);
@@ -137,142 +99,6 @@ impl PreparedRequest<'_> {
             true => Err(self.no_motion_error()),
             false => Ok(found.motions),
         }
-    }
-
-    /// Repeats the search from all around, each time from other places, until nothing new is found; where
-    /// simulations settle on motions of more periods or not at all, the largest number of times, since small
-    /// basins are frequent there. The branches through the motions that were new, those after a number of
-    /// motions, are followed first: simulations end where they come to a known branch.
-    fn search_again(
-        &self,
-        balance: &DrivenBalance,
-        values: &[f64],
-        mut before: usize,
-        branches: &mut Vec<BranchPath>,
-        found: &mut Search,
-    ) {
-        /// The number of searches, the first one included.
-        const ROUNDS: usize = 4;
-        for round in 1..ROUNDS {
-            let new = &found.motions.seeds[before..];
-            let known = branches.len();
-            if !new.is_empty() {
-                *branches = self.branches_through(balance, new, found.size, branches);
-            }
-            let has_small_basins = !found.motions.elsewhere.is_empty();
-            let is_larger = branches.len() > known;
-            if !(is_larger || has_small_basins) || self.question.interrupt.is_requested() {
-                return;
-            }
-            before = found.motions.seeds.len();
-            if is_larger {
-                self.begin_round(balance, branches, values, found);
-            }
-            self.question.progress.begin(values.len() * RADII.len() * self.speeds_of_starts());
-            self.search_around(values, round, found.size, found);
-        }
-    }
-
-    /// The stable motions on these branches at values of the parameter, each with its value; and others to which
-    /// iterations from these branches led.
-    fn stable_on(
-        &self,
-        balance: &DrivenBalance,
-        branches: &[BranchPath],
-        values: &[f64],
-    ) -> [Vec<(f64, TrueMotion)>; 2] {
-        /// The distance of a motion from its guess, in parts of its size, up to which it is on the branch.
-        const NEAR: f64 = 0.1;
-        let guess = |(pair, parameter): (&[BranchNode], f64)| {
-            let [one, other] = pair else { return None };
-            let part = one.part_of_way(other, parameter)?;
-            let [from, to] = [one, other].map(|node| node.begins(balance));
-            let start = [0, 1].map(|index| from[index] + part * (to[index] - from[index]));
-            Some(MotionGuess { start, parameter, size: balance.core.extent(&one.coefficients) })
-        };
-        let pairs = branches.iter().flat_map(|path| path.nodes.windows(2));
-        let pairs = pairs.flat_map(|pair| values.iter().map(move |value| (pair, *value)));
-        let guesses: Vec<MotionGuess> = pairs.filter_map(guess).collect();
-        let truths = periodic_motions(&self.driven, &guesses);
-        // Newton's iteration from a guess may lead to a motion that is on no branch.
-        let is_near = |guess: &MotionGuess, truth: &TrueMotion| {
-            let [x, v] = [0, 1].map(|index| truth.start[index] - guess.start[index]);
-            x.hypot(v / truth.frequency) <= NEAR * guess.size
-        };
-        let mut stable = vec![];
-        let mut strayed: Vec<(f64, TrueMotion)> = vec![];
-        for (guess, truth) in guesses.iter().zip(truths) {
-            let Some(truth) = truth.filter(|truth| truth.floquet.largest() < 1.0) else { continue };
-            if is_near(guess, &truth) {
-                stable.push((guess.parameter, truth));
-            } else if !is_among(&strayed, guess.parameter, &truth) {
-                strayed.push((guess.parameter, truth));
-            }
-        }
-        [stable, strayed]
-    }
-
-    /// The stable motions near the mirror images, half a period of the drive later, of these, unless they are among
-    /// them: a force that is nearly odd has two motions where an odd one has a motion and its image.
-    fn near_mirror_images(&self, stable: &[(f64, TrueMotion)]) -> Vec<(f64, TrueMotion)> {
-        let [low, high] = self.question.range;
-        if self.is_odd(0.5 * (low + high)) {
-            return vec![];
-        }
-        let guess = |(parameter, motion): &(f64, TrueMotion)| {
-            let drive = self.driven.frequency_at(*parameter) * self.question.periods as f64;
-            let half = StopCondition::Time(0.5 * TAU / drive);
-            let settings = options(motion.peak, TOLERANCE);
-            let [x, v, ..] = follow(&self.driven, motion.start, *parameter, half, &settings)?.end;
-            Some(MotionGuess { start: [-x, -v], parameter: *parameter, size: motion.peak })
-        };
-        let guesses: Vec<MotionGuess> = stable.iter().filter_map(guess).collect();
-        let truths = periodic_motions(&self.driven, &guesses);
-        let mut found: Vec<(f64, TrueMotion)> = vec![];
-        for (guess, truth) in guesses.iter().zip(truths) {
-            let Some(truth) = truth.filter(|truth| truth.floquet.largest() < 1.0) else { continue };
-            let is_known = |known: &[(f64, TrueMotion)]| is_among(known, guess.parameter, &truth);
-            if !is_known(stable) && !is_known(&found) {
-                found.push((guess.parameter, truth));
-            }
-        }
-        found
-    }
-
-    /// Whether the force changes its sign with those of position and velocity half a period of the drive later, by
-    /// values at places that are not special.
-    fn is_odd(&self, parameter: f64) -> bool {
-        const PLACES: u32 = 6;
-        const ROUNDING: f64 = 1e-12;
-        let half = 0.5 * TAU / self.question.periods as f64;
-        (0..PLACES).all(|place| {
-            let [x, v] = [0.37, 0.83].map(|part| 2.0 * (part * f64::from(place + 1)).fract() - 1.0);
-            let theta = 1.1 * f64::from(place);
-            let force = self.driven.force(&[x, v, theta, parameter]);
-            let mirrored = self.driven.force(&[-x, -v, theta + half, parameter]);
-            (force + mirrored).abs() <= ROUNDING * (force.abs() + 1.0)
-        })
-    }
-
-    /// Takes the stable motions of branches for known, and those to which iterations strayed for new ones.
-    fn begin_round(
-        &self,
-        balance: &DrivenBalance,
-        branches: &[BranchPath],
-        values: &[f64],
-        found: &mut Search,
-    ) {
-        let [stable, mut strayed] = self.stable_on(balance, branches, values);
-        strayed.extend(self.near_mirror_images(&stable));
-        found.stable = stable;
-        let begin = |(parameter, motion): &(f64, TrueMotion)| PlannedSimulation {
-            seed: None,
-            start: motion.start,
-            parameter: *parameter,
-        };
-        let planned: Vec<PlannedSimulation> = strayed.iter().map(begin).collect();
-        self.add_settled(&planned, found);
-        found.stable.extend(strayed);
     }
 
     /// The distances between the values of the parameter at which the search begins.
@@ -303,15 +129,6 @@ impl PreparedRequest<'_> {
         let count = VALUES * BETWEEN[usize::from(self.period_series.is_some())];
         let part = move |index: u32| (f64::from(index) + 0.5) / f64::from(count);
         (0..count).map(move |index| low + (high - low) * part(index))
-    }
-
-    /// The values of the parameter at which simulations begin from all around.
-    fn finer_values(&self) -> Vec<f64> {
-        let [low, high] = self.question.range;
-        // Motions of several periods come from fewer starts, each from its own.
-        let count = FINER * (VALUES - 1) * u32::try_from(self.question.periods).unwrap_or(1);
-        let part = |index: u32| f64::from(index) / f64::from(count);
-        (0..=count).map(|index| low + (high - low) * part(index)).collect()
     }
 
     /// Adds the motions on which simulations from rest settle; returns the motions about the
@@ -371,50 +188,6 @@ impl PreparedRequest<'_> {
         self.add_settled(&without, found);
     }
 
-    /// The number of speeds that starts all around have at each place: that of the drive, and for motions
-    /// of several periods, which swing with a frequency of their own, that of a free swing.
-    fn speeds_of_starts(&self) -> usize {
-        self.question.periods.min(2)
-    }
-
-    /// Adds the motions on which simulations settle from places all around in the plane of position
-    /// and velocity, in proportion to a size; other places in each round.
-    fn search_around(&self, values: &[f64], round: usize, size: f64, found: &mut Search) {
-        /// Parts of a turn from one value to the next, which leave no direction out (the golden
-        /// section), from one radius to the other, and from one speed to the other.
-        const TURNS: [f64; 3] = [0.618_034, 0.5, 0.25];
-        // A motion over a hilltop of the potential is larger than all that stay in a well.
-        let [low, high] = self.question.range;
-        let rests = [low, 0.5 * (low + high), high].map(|at| farthest_rest(&self.driven, at, size));
-        let size = rests.into_iter().fold(size, f64::max);
-        let around = |(index, parameter): (usize, &f64)| {
-            let parameter = *parameter;
-            let omega = self.driven.frequency_at(parameter) * self.question.periods as f64;
-            let places = (0..self.speeds_of_starts())
-                .flat_map(|speed| (0..RADII.len()).map(move |ring| [speed, ring]));
-            places.map(move |[speed, ring]| {
-                let turns = [index + round * values.len(), ring, speed].map(|count| count as f64);
-                let turn: f64 = TURNS.iter().zip(turns).map(|(part, count)| part * count).sum();
-                let (sine, cosine) = (TAU * turn).sin_cos();
-                let size = RADII[ring] * size;
-                // Another round has the other speed first.
-                let speed = match (speed + round) % 2 {
-                    0 => size * omega,
-                    _ => swing_speed(&self.driven, parameter, size),
-                };
-                PlannedSimulation { seed: None, start: [size * cosine, -speed * sine], parameter }
-            })
-        };
-        let planned: Vec<PlannedSimulation> = values.iter().enumerate().flat_map(around).collect();
-        for planned in planned.chunks(4 * LANES) {
-            if self.question.interrupt.is_requested() {
-                return;
-            }
-            planned.iter().for_each(|_| self.question.progress.advance());
-            self.add_settled(planned, found);
-        }
-    }
-
     /// The branches through these motions, by the method that finds them; none across jumps that
     /// harmonic balance cannot treat. Those that are known already are not followed again.
     pub(super) fn branches_through(
@@ -442,7 +215,7 @@ impl PreparedRequest<'_> {
         if self.period_series.is_some() {
             return self.shot_reentries(balance, path, self.surroundings());
         }
-        let found = self.walk(seeds, size).reentries(balance, path, self.surroundings());
+        let found = self.walk(size_of(seeds), size).reentries(balance, path, self.surroundings());
         let seed = |(found, parameter): (DVector<f64>, f64)| {
             (self.seed(balance, &found, parameter), balance.core.extent(&found))
         };
@@ -611,37 +384,38 @@ impl PreparedRequest<'_> {
 
     /// Adds the motions on which simulations settle, each behind the motion found beside its start,
     /// and those that do not become periodic.
-    fn add_settled(&self, planned: &[PlannedSimulation], found: &mut Search) {
+    pub(super) fn add_settled(&self, planned: &[PlannedSimulation], found: &mut Search) {
         const PERIODS: usize = 250;
         const CLOSELY: f64 = 1e-4;
         // Those that have Taylor series are followed side by side.
         let together = if self.driven.has_series() { 4 * LANES } else { 1 };
-        let InitialMotions { seeds, elsewhere, .. } = &mut found.motions;
         for planned in planned.chunks(together) {
             if self.driven.undamped || self.question.interrupt.is_requested() {
+                let seeds = &mut found.motions.seeds;
                 seeds.extend(planned.iter().filter_map(|planned| planned.seed.clone()));
                 continue;
             }
-            self.count([0, planned.len()], seeds.len());
-            let stable_at = |parameter: f64| {
-                let own = found.stable.iter().filter(|(value, _)| *value == parameter);
-                own.map(|(_, motion)| *motion).collect()
-            };
+            self.count([0, planned.len()], found.motions.seeds.len());
             let start = |planned: &PlannedSimulation| SettlingStart {
                 start: planned.start,
                 parameter: planned.parameter,
                 most: PERIODS,
-                known: stable_at(planned.parameter),
+                known: found.stable_at(planned.parameter).collect(),
             };
             let starts: Vec<SettlingStart> = planned.iter().map(start).collect();
             let all = settle_together(&self.driven, &starts, CLOSELY, &mut found.budget);
+            let InitialMotions { seeds, elsewhere, .. } = &mut found.motions;
             for (planned, settled) in planned.iter().zip(all) {
                 let parameter = planned.parameter;
                 seeds.extend(planned.seed.clone());
-                let Some(Settled { state, returns_after, positions, peak }) = settled else {
+                let Some(Settled { state, returns_after, positions, peak, nearest_returns }) =
+                    settled
+                else {
                     continue;
                 };
                 if returns_after != Some(1) {
+                    let guess = |start| MotionGuess { start, parameter, size: peak };
+                    found.returns.extend(nearest_returns.into_iter().map(guess));
                     let wave = first_harmonic(&positions);
                     elsewhere.push(self.elsewhere((state, parameter), returns_after, wave, peak));
                     continue;
@@ -653,34 +427,34 @@ impl PreparedRequest<'_> {
     }
 }
 
-/// Whether a motion is among these, each with its value of the parameter.
-fn is_among(known: &[(f64, TrueMotion)], parameter: f64, motion: &TrueMotion) -> bool {
-    /// Relative distance of motions that are one.
-    const SAME: f64 = 1e-6;
-    known.iter().any(|(own, known)| {
-        let apart = [0, 1].map(|index| (known.start[index] - motion.start[index]).abs());
-        *own == parameter && apart[0].max(apart[1]) <= SAME * motion.peak
-    })
-}
-
 /// A search for initial motions.
-struct Search {
+pub(super) struct Search {
     /// The result so far.
-    motions: InitialMotions,
+    pub(super) motions: InitialMotions,
     /// The evaluations that are left for simulations.
     budget: SimulationBudget,
     /// The size of the largest motion.
-    size: f64,
-    /// Stable motions of the first branches, each with its value of the parameter.
-    stable: Vec<(f64, TrueMotion)>,
+    pub(super) size: f64,
+    /// Motions of the first branches, each with its value of the parameter.
+    pub(super) known: Vec<(f64, TrueMotion)>,
+    /// Guesses of motions that simulations that do not become periodic surround.
+    pub(super) returns: Vec<MotionGuess>,
+}
+
+impl Search {
+    /// The stable motions that are known at a value of the parameter.
+    pub(super) fn stable_at(&self, parameter: f64) -> impl Iterator<Item = TrueMotion> {
+        let own = self.known.iter().filter(move |(value, _)| *value == parameter);
+        own.map(|(_, motion)| *motion).filter(|motion| motion.floquet.largest() < 1.0)
+    }
 }
 
 /// A simulation to be followed until it settles.
-struct PlannedSimulation {
+pub(super) struct PlannedSimulation {
     /// The motion that was found beside its start.
-    seed: Option<Seed>,
-    start: [f64; 2],
-    parameter: f64,
+    pub(super) seed: Option<Seed>,
+    pub(super) start: [f64; 2],
+    pub(super) parameter: f64,
 }
 
 /// A motion at a value of the parameter, or rest, about which larger ones are looked for.

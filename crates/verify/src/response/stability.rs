@@ -409,6 +409,9 @@ pub struct Settled {
     pub positions: Vec<f64>,
     /// Half of the way from the lowest to the highest point.
     pub peak: f64,
+    /// Places between two consecutive states that come near each other, the nearest first: guesses of
+    /// the motions of one period that one of more periods, or chaos, surrounds.
+    pub nearest_returns: Vec<[f64; 2]>,
 }
 
 /// A period of a simulation, in one piece or in legs between the jumps of the force.
@@ -499,6 +502,9 @@ fn rounding([x, v]: &[f64; 2], omega: f64) -> f64 {
     PLACES * x.abs().max(v.abs() / omega)
 }
 
+/// Largest number of periods within which a motion may repeat itself.
+const LONGEST: usize = 8;
+
 /// A simulation in progress.
 struct Settling {
     parameter: f64,
@@ -509,6 +515,8 @@ struct Settling {
     states: Vec<[f64; 2]>,
     /// The number of consecutive periods after which it has repeated itself.
     quiet: usize,
+    /// Whether it repeats itself after more than one period.
+    repeats: bool,
     last: Option<Period>,
 }
 
@@ -516,7 +524,15 @@ impl Settling {
     fn new(start: &SettlingStart) -> Self {
         let &SettlingStart { start, parameter, most, ref known } = start;
         let known = known.clone();
-        Self { parameter, known, left: most, states: vec![start], quiet: 0, last: None }
+        Self {
+            parameter,
+            known,
+            left: most,
+            states: vec![start],
+            quiet: 0,
+            repeats: false,
+            last: None,
+        }
     }
 
     fn next_period(&self, driven: &Driven) -> TimedStart {
@@ -539,22 +555,24 @@ impl Settling {
         if self.comes_to_known() {
             self.last = None;
         }
-        self.last.is_some() && self.quiet < 3 && self.left > 0
+        self.last.is_some() && self.quiet < 3 && !self.repeats && self.left > 0
     }
 
     /// Whether the last three states come nearer and nearer to a stable motion that is known, and are
     /// close to it.
     fn comes_to_known(&self) -> bool {
-        /// Ratio of the distance to the size of the motion.
+        /// Ratio of the distance to the size of the motion, and to that of the start, if the motion is rest.
         const CLOSE: f64 = 1e-2;
-        let [.., one, two, three] = self.states.as_slice() else { return false };
+        const CLOSE_TO_REST: f64 = 1e-4;
+        let [first, .., one, two, three] = self.states.as_slice() else { return false };
         self.known.iter().any(|motion| {
             let distance = |state: &[f64; 2]| {
                 let [x, v] = motion.start;
                 (state[0] - x).hypot((state[1] - v) / motion.frequency)
             };
+            let close = (CLOSE * motion.peak).max(CLOSE_TO_REST * distance(first));
             let [one, two, three] = [one, two, three].map(distance);
-            one > two && two > three && three <= CLOSE * motion.peak
+            one > two && two > three && three <= close
         })
     }
 
@@ -593,13 +611,31 @@ impl Settling {
         // A state of rest counts as periodic, also far from zero.
         let is_quiet = moved <= (closely * extent.max(1e-12)).max(rounding(&begin, omega));
         self.quiet = if is_quiet { self.quiet + 1 } else { 0 };
+        self.repeats = self.repeats_later(omega, extent);
         Some(path)
+    }
+
+    /// Whether it has repeated itself, to a small part of this extent, after each of the last two times as many
+    /// periods as it takes, which are more than one, and has been elsewhere in between.
+    fn repeats_later(&self, omega: f64, extent: f64) -> bool {
+        /// Parts of the extent below which states are one, and above which they are two.
+        const SAME: f64 = 1e-6;
+        const OTHER: f64 = 1e-2;
+        let end = self.states.len() - 1;
+        let apart = |index: usize, count: usize| {
+            let [one, other] = [self.states[index], self.states[index - count]];
+            (one[0] - other[0]).hypot((one[1] - other[1]) / omega)
+        };
+        let repeats = |count: usize| {
+            end >= 3 * count
+                && (0..2 * count).all(|back| apart(end - back, count) <= SAME * extent)
+                && (1..count).all(|fewer| apart(end, fewer) >= OTHER * extent)
+        };
+        (2..=LONGEST).any(repeats)
     }
 
     /// The steady state; `None` if the simulation failed.
     fn settled(self, driven: &Driven) -> Option<Settled> {
-        /// Largest number of periods within which a motion may repeat itself.
-        const LONGEST: usize = 8;
         /// Number of periods over which the largest difference is taken, and the largest fraction
         /// of it that may remain a quarter of the run later.
         const WINDOW: usize = 16;
@@ -640,8 +676,36 @@ impl Settling {
             returns_after: (1..=LONGEST).find(|count| repeats(*count) || dies_out(*count)),
             positions,
             peak,
+            nearest_returns: nearest_returns(&states, omega, extent),
         })
     }
+}
+
+/// The places half-way between two consecutive states, of those after the first half of a simulation, that come
+/// nearest to each other; each apart from the others in parts of this size.
+///
+/// A motion of two periods has that of one period, from which it doubled, between its states, and near
+/// each near return of chaos there is a periodic motion (Auerbach and others, Phys. Rev. Lett. 58, 1987, 2387).
+fn nearest_returns(states: &[[f64; 2]], omega: f64, size: f64) -> Vec<[f64; 2]> {
+    const MOST: usize = 3;
+    const APART: f64 = 0.1;
+    let distance =
+        |one: &[f64; 2], other: &[f64; 2]| (one[0] - other[0]).hypot((one[1] - other[1]) / omega);
+    let mut pairs: Vec<&[[f64; 2]]> = states[states.len() / 2..].windows(2).collect();
+    pairs.sort_by(|one, other| {
+        distance(&one[0], &one[1]).total_cmp(&distance(&other[0], &other[1]))
+    });
+    let mut places: Vec<[f64; 2]> = Vec::new();
+    for pair in pairs {
+        let place = [0, 1].map(|index| 0.5 * (pair[0][index] + pair[1][index]));
+        if places.iter().all(|other| distance(other, &place) > APART * size) {
+            places.push(place);
+        }
+        if places.len() == MOST {
+            break;
+        }
+    }
+    places
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ use super::balance::DrivenBalance;
 use super::branches::{KnownMotion, largest};
 use super::continuation::{BranchEnd, BranchNode, BranchPath};
 use super::jump::{StopCondition, VariationalMotion, follow};
-use super::seeds::Seed;
+use super::seeds::{Seed, size_of};
 use super::stability::{
     Floquet, SAMPLES, TOLERANCE, TrueMotion, convergence_test, half_of_peak_to_peak, options,
 };
@@ -389,7 +389,7 @@ impl PreparedRequest<'_> {
             while path.nodes.len() > 2 && path.nodes.last().is_some_and(is_small) {
                 path.nodes.pop();
             }
-            let walk = self.walk(seeds, largest);
+            let walk = self.walk(size_of(seeds), largest);
             let rest =
                 path.nodes.last().and_then(|last| walk.rest_beside(balance, last, last.parameter));
             if let Some(rest) = rest {

@@ -472,6 +472,10 @@ fn refused(error: ResponseError) -> Failure {
         ResponseError::NoMotion { repeats: Some(periods @ 2..), .. } => {
             Some(format!("--periods {periods} asks for them"))
         }
+        ResponseError::NoMotion { repeats: Some(_), .. } => Some(
+            "motions there are not apart from each other, as where coordinates can be shifted together without a force: a weak spring, such as k*x with --at k=1e-3, holds them"
+                .to_owned(),
+        ),
         ResponseError::NoMotion { .. } => {
             Some("the motion escapes or never repeats itself there: try another range".to_owned())
         }

@@ -185,14 +185,18 @@ fn returns_after(states: &[Vec<f64>], angles: &[usize]) -> Option<(usize, i64)> 
     Some((count, most.unwrap_or(0.0) as i64))
 }
 
-/// Half of the way of each state from its lowest to its highest value.
+/// Half of the way of each state from its lowest to its highest value; zero for one that only varies by rounding.
 fn sizes_of(states: &[Vec<f64>]) -> Vec<f64> {
+    /// Ratio to the largest value of all states below which a difference is rounding.
+    const ROUNDING: f64 = 1e-10;
+    let largest = states.iter().flatten().map(|value| value.abs()).fold(0.0, f64::max);
     let size = |index: usize| {
         let values = states.iter().map(|state| state[index]);
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
             (f64::min(low, value), f64::max(high, value))
         });
-        0.5 * (high - low)
+        let size = 0.5 * (high - low);
+        if size > ROUNDING * largest { size } else { 0.0 }
     };
     (0..states.first().map_or(0, Vec::len)).map(size).collect()
 }

@@ -272,6 +272,9 @@ fn without_motion(undamped: bool, repeats: Option<usize>) -> String {
     match (undamped, repeats) {
         (true, _) => ": without damping the amplitude is unbounded at resonance".to_owned(),
         (false, None) => String::new(),
+        (false, Some(1)) => {
+            ", but simulations repeat themselves after one period of the drive".to_owned()
+        }
         (false, Some(periods)) => {
             format!(", but simulations repeat themselves after {periods} periods of the drive")
         }

@@ -21,6 +21,9 @@ use crate::response::bifurcation::{BifurcationKind, bisect_sign_change};
 /// Distance from the unit circle within which a multiplier of an undamped motion lies on it.
 pub(super) const ON_CIRCLE: f64 = 1e-4;
 
+/// Distance from the unit circle below which a multiplier lies on it, by the accuracy of the variations.
+const NEUTRAL: f64 = 1e-9;
+
 /// The eigenvalues of a matrix, the largest first; `None` if they could not be found.
 pub(super) fn eigenvalues(matrix: DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     const MOST: usize = 1_000;
@@ -63,7 +66,8 @@ impl CoupledProblem<'_> {
         let largest = multipliers.iter().map(|value| value.norm()).fold(0.0, f64::max);
         match self.undamped {
             true => largest <= 1.0 + ON_CIRCLE,
-            false => largest < 1.0,
+            // A coordinate without damping that nothing moves keeps what it has.
+            false => largest < 1.0 - NEUTRAL,
         }
     }
 }

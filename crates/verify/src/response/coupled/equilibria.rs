@@ -153,6 +153,10 @@ impl CoupledProblem<'_> {
             }
             index += 1;
         }
+        let determinant = |rest: &Rest| {
+            let at = self.in_time.linearised(rest.start(), 0.0, rest.parameter());
+            at.by_state.determinant()
+        };
         let mut hopf = Vec::new();
         // A branch that begins at a crossing turns back there without a fold of its own.
         let mut crossings: Vec<Rest> = Vec::new();
@@ -161,13 +165,17 @@ impl CoupledProblem<'_> {
                 && from.orientation != to.orientation
                 && from.parameter_slope() * to.parameter_slope() > 0.0
             {
-                crossings.extend(crossing(&equations, from, to));
+                crossings.extend(located_crossing(&equations, determinant, from, to));
             }
         }
         let is_crossing = |rest: &Rest| {
             crossings.iter().any(|other| {
                 (&other.unknowns - &rest.unknowns).component_div(&sizes(rest)).norm() < 1e-3
             })
+        };
+        let located = |rest: &Rest| {
+            let parameter = rest.parameter();
+            if parameter.abs() < ROUNDING * (high - low) { 0.0 } else { parameter }
         };
         let value = |rest: &Rest| {
             let value = self.shown.call(&rest.start()[..self.coordinates]);
@@ -180,7 +188,7 @@ impl CoupledProblem<'_> {
                 let mut push = |kind, at: &Rest| {
                     changes.push(EquilibriumChange {
                         kind,
-                        parameter: at.parameter(),
+                        parameter: located(at),
                         value: value(at),
                         criticality: None,
                     });
@@ -197,7 +205,7 @@ impl CoupledProblem<'_> {
                         push(BifurcationKind::Fold, &at);
                     }
                 } else if from.orientation != to.orientation
-                    && let Some(at) = crossing(&equations, from, to)
+                    && let Some(at) = located_crossing(&equations, determinant, from, to)
                 {
                     push(BifurcationKind::BranchPoint, &at);
                 }
@@ -288,15 +296,49 @@ pub(super) fn null_vector(matrix: DMatrix<f64>) -> Option<DVector<f64>> {
     Some(eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned())
 }
 
-/// The crossing of branches between two equilibria.
-fn crossing(equations: &OrbitEquations<(), ()>, from: &Rest, to: &Rest) -> Option<Rest> {
+/// The part of the way between two equilibria at which another branch crosses.
+fn part_of_crossing(equations: &OrbitEquations<(), ()>, from: &Rest, to: &Rest) -> f64 {
     let orientation = |part: f64| match part {
         0.0 => from.orientation,
         1.0 => to.orientation,
         part => equations.between(from, to, part).map_or(f64::NAN, |rest| rest.orientation),
     };
-    let middle = bisect_sign_change(orientation);
+    bisect_sign_change(orientation)
+}
+
+/// An equilibrium near the crossing of branches between two equilibria.
+fn crossing(equations: &OrbitEquations<(), ()>, from: &Rest, to: &Rest) -> Option<Rest> {
+    let middle = part_of_crossing(equations, from, to);
     [0.0, 1e-6, -1e-6, 1e-3, -1e-3]
         .into_iter()
         .find_map(|aside| equations.between(from, to, (middle + aside).clamp(0.0, 1.0)))
+}
+
+/// The crossing of branches between two equilibria by the cubics through the equilibria at four places about it:
+/// at the crossing itself, where a determinant vanishes, Newton's method does not tell one branch from the other.
+fn located_crossing(
+    equations: &OrbitEquations<(), ()>,
+    determinant: impl Fn(&Rest) -> f64,
+    from: &Rest,
+    to: &Rest,
+) -> Option<Rest> {
+    /// The distances of the four places.
+    const ASIDE: [f64; 4] = [-0.02, -0.01, 0.01, 0.02];
+    let near = crossing(equations, from, to)?;
+    let middle = part_of_crossing(equations, from, to).clamp(0.02, 0.98);
+    let rests: Option<Vec<Rest>> =
+        ASIDE.iter().map(|aside| equations.between(from, to, middle + aside)).collect();
+    let Some(rests) = rests else { return Some(near) };
+    let weight = |index: usize, aside: f64| -> f64 {
+        let others = ASIDE.iter().enumerate().filter(|(other, _)| *other != index);
+        others.map(|(_, other)| (aside - other) / (ASIDE[index] - other)).product()
+    };
+    let determinants: Vec<f64> = rests.iter().map(determinant).collect();
+    let value = |aside: f64| -> f64 {
+        determinants.iter().enumerate().map(|(index, own)| weight(index, aside) * own).sum()
+    };
+    let Ok(root) = find_root(value, ASIDE[0], ASIDE[3]) else { return Some(near) };
+    let terms = rests.iter().enumerate().map(|(index, rest)| &rest.unknowns * weight(index, root));
+    let unknowns = terms.sum();
+    Some(Rest { unknowns, ..near })
 }

@@ -3,7 +3,7 @@
 //! In: a double or a fraction, and a number of digits. Out: decimal text, or the fraction that
 //! these digits stand for.
 
-use num_traits::{Pow, Signed, Zero};
+use num_traits::{Pow, Signed, ToPrimitive as _, Zero};
 
 use crate::exact::rational::{from_f64, to_f64};
 use crate::exact::scaled::Scaled;
@@ -139,6 +139,14 @@ pub fn not_above_typed(value: f64) -> f64 {
 /// Returns a fraction as a decimal in full, as [`significant`] writes it; `None` if it would need
 /// more than forty significant digits.
 pub fn exact_decimal(value: &Rational) -> Option<String> {
+    match ShortDecimal::of_fraction(value) {
+        Some(short) => Some(short.to_string()),
+        None => long_decimal(value),
+    }
+}
+
+/// The same of any number of digits.
+fn long_decimal(value: &Rational) -> Option<String> {
     const MOST: usize = 40;
     let ten = Integer::from(10);
     let mut rest = value.denom().clone();
@@ -160,6 +168,83 @@ pub fn exact_decimal(value: &Rational) -> Option<String> {
         true => fixed(value, usize::try_from(-power).unwrap_or(0)),
         false => in_powers(value, &mantissa, power),
     })
+}
+
+/// A decimal `mantissa * 10^-decimals` of few digits, written without a power of ten. No digit behind the point is a
+/// trailing zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShortDecimal {
+    /// The digits.
+    mantissa: i64,
+    /// Number of digits behind the point.
+    decimals: u32,
+}
+
+impl ShortDecimal {
+    /// The decimal that a fraction is; `None` if it is none, or has more than fourteen digits, or is smaller than
+    /// a thousandth.
+    pub fn of_fraction(value: &Rational) -> Option<Self> {
+        Self::of_quotient(value.numer().to_i64()?, value.denom().to_i64()?)
+    }
+
+    /// The decimal that a quotient in lowest terms is; `None` as for [`of_fraction`](Self::of_fraction).
+    pub fn of_quotient(numerator: i64, denominator: i64) -> Option<Self> {
+        /// No longer number is short, and so no power of two or five that divides a power of ten.
+        const MOST: i64 = 100_000_000_000_000;
+        const LEAST: i64 = 1_000;
+        let (mut rest, mut twos, mut fives) = (denominator, 0, 0);
+        if rest <= 0 || rest > MOST || numerator.unsigned_abs() >= MOST.unsigned_abs() {
+            return None;
+        }
+        while rest % 2 == 0 {
+            (rest, twos) = (rest / 2, twos + 1);
+        }
+        while rest % 5 == 0 {
+            (rest, fives) = (rest / 5, fives + 1);
+        }
+        let decimals = u32::max(twos, fives);
+        let factor = 2_i64
+            .checked_pow(decimals - twos)?
+            .checked_mul(5_i64.checked_pow(decimals - fives)?)?;
+        let mantissa = numerator.checked_mul(factor)?;
+        let is_small = numerator != 0
+            && numerator.unsigned_abs() < denominator.unsigned_abs().div_ceil(LEAST.unsigned_abs());
+        (rest == 1 && !is_small && mantissa.unsigned_abs() < MOST.unsigned_abs())
+            .then_some(Self { mantissa, decimals })
+    }
+
+    /// The number of its digits, zeros in front left out.
+    pub const fn digits(self) -> usize {
+        digits(self.mantissa.unsigned_abs())
+    }
+}
+
+/// The number of digits of a whole number.
+pub const fn digits(number: u64) -> usize {
+    match number.checked_ilog10() {
+        Some(tens) => tens as usize + 1,
+        None => 1,
+    }
+}
+
+impl std::fmt::Display for ShortDecimal {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let sign = if self.mantissa < 0 { "-" } else { "" };
+        let unit = 10_u64.pow(self.decimals);
+        let size = self.mantissa.unsigned_abs();
+        match self.decimals {
+            0 => write!(formatter, "{sign}{size}"),
+            decimals => {
+                write!(
+                    formatter,
+                    "{sign}{}.{:0width$}",
+                    size / unit,
+                    size % unit,
+                    width = decimals as usize
+                )
+            }
+        }
+    }
 }
 
 /// Divides a number by a factor as often as it goes, and counts how often that is.
@@ -308,6 +393,30 @@ fn in_units(value: &Rational, digits: usize) -> (Rational, i32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Against the decimals of any number of digits.
+    #[test]
+    fn short_decimals_are_written_as_all_others() {
+        for denominator in
+            [1, 2, 5, 8, 10, 40, 125, 128, 3, 1_000, 15_625, 1_048_576, 1_000_000_000]
+        {
+            for numerator in
+                [0, 1, -1, 7, 99, 100, -1_200, 4_095, 123_457, 10_000_000, 99_999_999_999_999]
+            {
+                let value = crate::exact::rational::ratio(numerator, denominator);
+                let (expected, own) = (long_decimal(&value), ShortDecimal::of_fraction(&value));
+                if let Some(own) = own {
+                    let text = own.to_string();
+                    let digits = text.replace(['-', '.'], "");
+                    assert_eq!(own.digits(), digits.trim_start_matches('0').len().max(1), "{text}");
+                    assert_eq!(Some(text), expected);
+                }
+                let is_short =
+                    numerator.abs() < 200_000 && denominator.abs() < 2_000 && denominator != 3;
+                assert!(own.is_some() || !is_short || numerator.abs() < denominator, "{value}");
+            }
+        }
+    }
 
     #[test]
     fn as_people_write_them() {

@@ -77,6 +77,12 @@ pub(super) trait Analytic: Clone + Sized {
         self.product(self)
     }
 
+    /// `self / divisor`; `None` if zero may be among the divisors.
+    fn over(&self, divisor: &Ball) -> Option<Self> {
+        let inverse = WORKING.quotient(&WORKING.integer(1), divisor)?;
+        Some(self.product(&Self::constant(inverse)))
+    }
+
     /// A whole power.
     fn power(&self, exponent: u32) -> Self {
         let mut result: Option<Self> = None;

@@ -15,6 +15,8 @@
 //! Source: J.-P. Lessard, J. D. Mireles James: Computer assisted Fourier analysis in sequence
 //! spaces of varying regularity, SIAM Journal on Mathematical Analysis 49 (2017), 530-561.
 
+use std::sync::OnceLock;
+
 use super::elementary::Analytic;
 use crate::exact::ball::{Ball, Balls};
 use crate::exact::ball_products::{BallFactor, BallProductSums};
@@ -280,12 +282,6 @@ impl FourierSeries {
             .trimmed()
     }
 
-    /// `self / divisor`; `None` if zero may be among the divisors.
-    pub(super) fn over(&self, divisor: &Ball) -> Option<Self> {
-        let inverse = WORKING.quotient(&WORKING.integer(1), divisor)?;
-        Some(self.product(&Self::constant(inverse)))
-    }
-
     /// The middles without radii, which suffice for the guess of an iteration.
     fn without_radii(mut self) -> Self {
         for ball in self.cosines.iter_mut().chain(&mut self.sines) {
@@ -301,8 +297,7 @@ impl FourierSeries {
         const DIGITS: f64 = 1e-15;
         let waves = (0..self.length())
             .map(|k| [&self.cosine(k), &self.sine(k)].map(|ball| WORKING.nearest(ball)));
-        let count = (8 * self.length()).next_power_of_two().clamp(64, 4096);
-        let transform = Transform::new(count);
+        let (count, transform) = transform(self.length());
         let samples: Vec<f64> = transform.sum_of_waves(waves).into_iter().map(function).collect();
         if samples.iter().any(|value| !value.is_finite()) {
             return None;
@@ -385,6 +380,17 @@ impl Analytic for FourierSeries {
     fn sampled(&self, function: impl Fn(f64) -> f64) -> Option<Self> {
         self.sampled(function)
     }
+}
+
+/// The number of samples for a function of a series of this length, and their transform.
+pub(super) fn transform(length: usize) -> (usize, &'static Transform) {
+    const LEAST: u32 = 6;
+    const MOST: u32 = 12;
+    static TRANSFORMS: [OnceLock<Transform>; (MOST - LEAST + 1) as usize] =
+        [const { OnceLock::new() }; (MOST - LEAST + 1) as usize];
+    let count = (8 * length).next_power_of_two().clamp(1 << LEAST, 1 << MOST);
+    let own = &TRANSFORMS[(count.ilog2() - LEAST) as usize];
+    (count, own.get_or_init(|| Transform::new(count)))
 }
 
 /// The balls that are not zero as factors, by harmonic.

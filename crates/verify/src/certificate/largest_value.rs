@@ -13,6 +13,9 @@
 
 use std::sync::LazyLock;
 
+use pulp::{Arch, NullaryFnOnce};
+
+use super::double_series::DoubleSeries;
 use super::elementary::Analytic as _;
 use super::fourier_series::{FourierSeries, WORKING, sum_of_angles};
 use crate::exact::ball::Ball;
@@ -36,28 +39,69 @@ static COSINES: LazyLock<Vec<f64>> = LazyLock::new(|| {
     (0..=INTERVALS).map(next).collect()
 });
 
+/// The cosines of multiples of the points up to the middle, multiple by multiple, as far as many series reach.
+static ROWS: LazyLock<Vec<Vec<f64>>> = LazyLock::new(|| {
+    const MOST: usize = 64;
+    let row = |k: usize| (0..=INTERVALS / 2).map(|point| cosine(k * point)).collect();
+    (0..MOST).map(row).collect()
+});
+
+/// The cosine of a multiple of `pi/M`.
+fn cosine(angle: usize) -> f64 {
+    let angle = angle % (2 * INTERVALS);
+    COSINES[angle.min(2 * INTERVALS - angle)]
+}
+
+/// The largest size at the points, from the even and the odd harmonics: those at `pi - theta` have the other sign.
+struct LargestAtPoints<'a>(&'a [f64]);
+
+impl NullaryFnOnce for LargestAtPoints<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        let mut sums = [[0.0; INTERVALS / 2 + 1]; 2];
+        for (k, own) in self.0.iter().enumerate() {
+            let sums = &mut sums[k % 2];
+            match ROWS.get(k) {
+                Some(row) => {
+                    sums.iter_mut().zip(row).for_each(|(sum, cosine)| *sum += own * cosine)
+                }
+                None => sums
+                    .iter_mut()
+                    .enumerate()
+                    .for_each(|(point, sum)| *sum += own * cosine(k * point)),
+            }
+        }
+        let [even, odd] = &sums;
+        let mut largest = 0.0;
+        for (even, odd) in even.iter().zip(odd) {
+            let size = even.abs() + odd.abs();
+            // Not a number stays one.
+            largest = if size <= largest { largest } else { size };
+        }
+        largest
+    }
+}
+
 /// A bound of the largest size of a series; sines are bounded by their norm.
 pub(super) fn largest_value(series: &FourierSeries) -> Bound {
-    let coefficients: Vec<f64> = series.cosines.iter().map(|ball| WORKING.nearest(ball)).collect();
-    let cosine = |angle: usize| {
-        let angle = angle % (2 * INTERVALS);
-        COSINES[angle.min(2 * INTERVALS - angle)]
-    };
-    let value = |point: usize| -> f64 {
-        coefficients.iter().enumerate().map(|(k, size)| size * cosine(k * point)).sum()
-    };
-    let at_points = (0..=INTERVALS).map(|point| Bound::exactly(value(point).abs()));
-    let at_points = at_points.fold(Bound::ZERO, Bound::max);
-    let sizes = || series.cosines.iter().map(|ball| WORKING.magnitude(ball)).enumerate();
+    let cosines = DoubleSeries::of_balls(&series.cosines);
+    let sines: Bound = series.sines.iter().map(|ball| WORKING.magnitude(ball)).sum();
+    largest_value_of_doubles(cosines.cosines(), cosines.tail() + sines + series.tail)
+}
+
+/// A bound of the largest size of a cosine series with these coefficients and a tail.
+pub(super) fn largest_value_of_doubles(cosines: &[f64], tail: Bound) -> Bound {
+    let at_points = Bound::exactly(Arch::new().dispatch(LargestAtPoints(cosines)));
+    let sizes = || cosines.iter().map(|own| Bound::exactly(own.abs())).enumerate();
     let curvature: Bound =
         sizes().map(|(k, size)| size * Bound::exactly(k as f64) * Bound::exactly(k as f64)).sum();
     // 1.6 is above pi/2.
     let apart = Bound::exactly(1.6).over(INTERVALS as f64);
     let norm: Bound = sizes().map(|(_, size)| size).sum();
-    let rounding = Bound::exactly(f64::EPSILON) * Bound::exactly(coefficients.len() as f64 + 4.0);
-    let radii: Bound = series.cosines.iter().map(|ball| ball.radius).sum();
-    let sines: Bound = series.sines.iter().map(|ball| WORKING.magnitude(ball)).sum();
-    at_points + apart * apart * curvature / 2 + rounding * norm + radii + sines + series.tail
+    let rounding = Bound::exactly(f64::EPSILON) * Bound::exactly(cosines.len() as f64 + 4.0);
+    at_points + apart * apart * curvature / 2 + rounding * norm + tail
 }
 
 #[cfg(test)]

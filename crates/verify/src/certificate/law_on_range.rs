@@ -29,15 +29,19 @@
 //! integral); R. E. Moore, Interval Analysis, Prentice-Hall 1966, chapter 6, for the mean value form.
 
 mod contact;
+mod cosine_series;
 mod inverse_frequency;
 mod jet;
 mod mode;
 
+use std::sync::OnceLock;
+
 use num_traits::{One as _, Signed as _, Zero as _};
 
+use super::double_series::DoubleSeries;
+use super::elementary::Analytic;
 use super::force::NoValue;
 use super::fourier_series::{FourierSeries, WORKING};
-use super::largest_value::largest_value;
 use super::{CheckError, NotCertified, coordinate};
 use crate::decimal::decimal;
 use crate::exact::ball::Ball;
@@ -49,8 +53,9 @@ use crate::interrupt::Supervision;
 use crate::symbol::Symbol;
 use contact::ContactMean;
 pub use contact::HuntCrossleyForce;
+use cosine_series::CosineSeries;
 use inverse_frequency::{ForceOnRange, PiecePolynomial, Scale, TruthPiece};
-use jet::{Jet, LawValues, Scaled, Variable, law_along, line, widened};
+use jet::{Jet, LawValues, Scaled, Variable, law_along, widened};
 pub use mode::ModeBranch;
 
 /// The quantity that a law gives.
@@ -338,6 +343,9 @@ pub struct TrueFrequency {
     /// In the variable, and in r = 1/p.
     near_pieces: Vec<TruthPiece>,
     far_pieces: Vec<TruthPiece>,
+    /// Whether the pieces are of doubles, and then those of balls, once a law asks for them.
+    is_of_doubles: bool,
+    of_balls: OnceLock<Option<Box<Self>>>,
 }
 
 /// The largest degree of a force in a parameter that goes to infinity.
@@ -353,26 +361,59 @@ impl TrueFrequency {
         supervision: Supervision,
     ) -> Result<Self, LawNotProved> {
         certificate.well_formed().map_err(LawNotProved::Malformed)?;
+        if let MotionsOfLaw::Mode(branch) = &certificate.motions {
+            let infinite = || LawNotProved::Malformed("an amplitude that goes to infinity");
+            let (from, to) = (&certificate.from, certificate.to.as_ref().ok_or_else(infinite)?);
+            let near_pieces = branch.pieces(certificate.variable, from, to, supervision)?;
+            return Ok(Self::of_pieces(None, [near_pieces, vec![]]));
+        }
+        match Self::enclosed::<DoubleSeries>(certificate, supervision) {
+            Ok(truth) => Ok(Self { is_of_doubles: true, ..truth }),
+            // The digits of doubles may be too few.
+            Err(LawNotProved::NoValue(_)) => {
+                Self::enclosed::<FourierSeries>(certificate, supervision)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The truth on these pieces, in the variable and in r.
+    fn of_pieces(
+        force: Option<ForceOnRange>,
+        [near_pieces, far_pieces]: [Vec<TruthPiece>; 2],
+    ) -> Self {
+        Self { force, near_pieces, far_pieces, is_of_doubles: false, of_balls: OnceLock::new() }
+    }
+
+    /// The truth of one coordinate over these series.
+    fn enclosed<S: CosineSeries>(
+        certificate: &LawCertificate,
+        supervision: Supervision,
+    ) -> Result<Self, LawNotProved> {
         match &certificate.motions {
             MotionsOfLaw::Coordinate { force, .. }
                 if certificate.quantity == LawQuantity::ContactTime =>
             {
-                Self::of_contact(certificate, force, supervision)
+                Self::of_contact::<S>(certificate, force, supervision)
             }
             MotionsOfLaw::Coordinate { force, mass, start } => {
-                Self::of_coordinate(certificate, force, mass.as_ref(), start, supervision)
+                Self::of_coordinate::<S>(certificate, force, mass.as_ref(), start, supervision)
             }
-            MotionsOfLaw::Mode(branch) => {
-                let infinite = || LawNotProved::Malformed("an amplitude that goes to infinity");
-                let (from, to) = (&certificate.from, certificate.to.as_ref().ok_or_else(infinite)?);
-                let near_pieces = branch.pieces(certificate.variable, from, to, supervision)?;
-                Ok(Self { force: None, near_pieces, far_pieces: vec![] })
-            }
+            MotionsOfLaw::Mode(_) => Err(LawNotProved::Malformed("a mode of one coordinate")),
+        }
+    }
+
+    /// The same truth over balls; `None` where it is no closer.
+    fn of_balls(&self, certificate: &LawCertificate, supervision: Supervision) -> Option<&Self> {
+        let enclosed = || Self::enclosed::<FourierSeries>(certificate, supervision).ok();
+        match self.is_of_doubles {
+            true => self.of_balls.get_or_init(|| enclosed().map(Box::new)).as_deref(),
+            false => Some(self),
         }
     }
 
     /// The frequency of a motion of one coordinate.
-    fn of_coordinate(
+    fn of_coordinate<S: CosineSeries>(
         certificate: &LawCertificate,
         force: &Expr,
         mass: Option<&Expr>,
@@ -387,22 +428,23 @@ impl TrueFrequency {
         let near = ForceOnRange::new(start, variable, force.clone(), Scale::OWN)?.with_mass(mass);
         let (from, one) = (&certificate.from, Rational::one());
         let (near_pieces, far_pieces) = match &certificate.to {
-            Some(to) => (near.pieces(from, to, supervision)?, vec![]),
+            Some(to) => (near.pieces::<S>(from, to, supervision)?, vec![]),
             None => {
                 let far = Self::far(variable, force, start)?.with_mass(mass);
-                let pieces = far.pieces(&Rational::zero(), &from.max(&one).recip(), supervision)?;
+                let pieces =
+                    far.pieces::<S>(&Rational::zero(), &from.max(&one).recip(), supervision)?;
                 let near_pieces = match *from < one {
-                    true => near.pieces(from, &one, supervision)?,
+                    true => near.pieces::<S>(from, &one, supervision)?,
                     false => vec![],
                 };
                 (near_pieces, pieces)
             }
         };
-        Ok(Self { force: Some(near), near_pieces, far_pieces })
+        Ok(Self::of_pieces(Some(near), [near_pieces, far_pieces]))
     }
 
     /// T/T_0 and the restitution of the contact of a certificate.
-    fn of_contact(
+    fn of_contact<S: CosineSeries>(
         certificate: &LawCertificate,
         force: &Expr,
         supervision: Supervision,
@@ -414,8 +456,8 @@ impl TrueFrequency {
         let mean = ContactMean::new(&contact.exponent, damping).ok_or_else(no_contact)?;
         let near = ForceOnRange::of_contact(mean, certificate.variable)?;
         let to = certificate.to.as_ref().ok_or_else(no_contact)?;
-        let near_pieces = near.pieces(&certificate.from, to, supervision)?;
-        Ok(Self { force: Some(near), near_pieces, far_pieces: vec![] })
+        let near_pieces = near.pieces::<S>(&certificate.from, to, supervision)?;
+        Ok(Self::of_pieces(Some(near), [near_pieces, vec![]]))
     }
 
     /// `1/omega` at a place of a bounded range, or T/T_0 and the restitution, to the digits of a double.
@@ -457,10 +499,26 @@ impl TrueFrequency {
         certificate: &LawCertificate,
         supervision: Supervision,
     ) -> Result<f64, LawNotProved> {
+        let by_doubles = self.largest_error_over::<DoubleSeries>(certificate, supervision);
+        match by_doubles {
+            Ok(error) => Ok(error),
+            Err(error @ (LawNotProved::Stopped | LawNotProved::Growth(_))) => Err(error),
+            Err(error) => match self.of_balls(certificate, supervision) {
+                Some(truth) => truth.largest_error_over::<FourierSeries>(certificate, supervision),
+                None => Err(error),
+            },
+        }
+    }
+
+    fn largest_error_over<S: CosineSeries>(
+        &self,
+        certificate: &LawCertificate,
+        supervision: Supervision,
+    ) -> Result<f64, LawNotProved> {
         let bound = not_above(&certificate.claim[1]);
         let mut largest = 0.0_f64;
         for piece in self.near_pieces.iter().chain(&self.far_pieces) {
-            largest = largest.max(piece.largest_error(certificate, bound, supervision)?);
+            largest = largest.max(piece.largest_error::<S>(certificate, bound, supervision)?);
         }
         Ok(largest)
     }
@@ -470,15 +528,33 @@ impl TrueFrequency {
     /// # Errors
     /// No value there.
     pub fn least_error(&self, certificate: &LawCertificate) -> Result<f64, LawNotProved> {
+        /// The part of the error that may be unknown after a calculation in doubles.
+        const UNKNOWN: f64 = 1e-8;
+        let [least, most] = match self.error_at_worst_place::<DoubleSeries>(certificate) {
+            Ok(error) => error,
+            Err(LawNotProved::NoValue(_)) => [0.0, f64::INFINITY],
+            Err(error) => return Err(error),
+        };
+        match most - least <= UNKNOWN * least {
+            true => Ok(least),
+            false => Ok(self.error_at_worst_place::<FourierSeries>(certificate)?[0]),
+        }
+    }
+
+    /// Bounds of the error of a law at its worst place.
+    fn error_at_worst_place<S: CosineSeries>(
+        &self,
+        certificate: &LawCertificate,
+    ) -> Result<[f64; 2], LawNotProved> {
         let no_value = || LawNotProved::NoValue(certificate.law.to_string());
         let place = WORKING.fraction(&certificate.worst);
         let truth = match (&self.force, &certificate.motions) {
             (Some(force), MotionsOfLaw::Coordinate { start: StartOfLaw::Variable, .. })
                 if place.is_zero() =>
             {
-                force.at_rest()?
+                force.at_rest::<S>()?
             }
-            (Some(force), _) => force.truth(&place)?,
+            (Some(force), _) => force.truth::<S>(&place, None)?,
             (None, _) => {
                 let piece = self.piece_at(&certificate.worst).ok_or_else(no_value)?;
                 let e = WORKING.fraction(&((&certificate.worst - &piece.middle) / &piece.half));
@@ -492,7 +568,8 @@ impl TrueFrequency {
         let quotient =
             quotient(certificate, Scale::OWN, &truth, &variable)?.ok_or_else(no_value)?;
         let error = WORKING.difference(&quotient.value, &WORKING.integer(1));
-        Ok(WORKING.distance_from_zero(&error).max(0.0))
+        let least = WORKING.distance_from_zero(&error).max(0.0);
+        Ok([least, WORKING.magnitude(&error).value()])
     }
 }
 
@@ -525,10 +602,35 @@ fn quotient<V: LawValues>(
     }
 }
 
+/// The truth on a part of a piece, as series of Chebyshev.
+struct PieceInterval<S> {
+    /// The ends, between -1 and 1.
+    ends: [Rational; 2],
+    truth: S,
+    /// The restitution of a contact.
+    restitution: Option<S>,
+    /// The number of times that the piece was halved.
+    halvings: u32,
+}
+
+impl<S: CosineSeries> PieceInterval<S> {
+    /// The upper or the lower half.
+    fn half(&self, is_upper: bool) -> Self {
+        let [low, high] = &self.ends;
+        let middle = (low + high) / Integer::from(2);
+        Self {
+            ends: if is_upper { [middle, high.clone()] } else { [low.clone(), middle] },
+            truth: self.truth.on_half(is_upper),
+            restitution: self.restitution.as_ref().map(|own| own.on_half(is_upper)),
+            halvings: self.halvings + 1,
+        }
+    }
+}
+
 impl TruthPiece {
     /// An upper bound of the error of a law on this piece, which is halved until that is within a
     /// bound.
-    fn largest_error(
+    fn largest_error<S: CosineSeries>(
         &self,
         certificate: &LawCertificate,
         bound: f64,
@@ -537,53 +639,56 @@ impl TruthPiece {
         /// The most halvings of a piece, and the most parts of it.
         const DEEPEST: u32 = 40;
         const MOST: usize = 200_000;
-        let two = Integer::from(2);
-        let mut open = vec![(-Rational::one(), Rational::one(), 0)];
+        let whole = PieceInterval {
+            ends: [-Rational::one(), Rational::one()],
+            truth: self.truth.series::<S>(),
+            restitution: self.restitution.as_ref().map(PiecePolynomial::series::<S>),
+            halvings: 0,
+        };
+        let mut open = vec![whole];
         let (mut largest, mut tried) = (0.0_f64, 0);
-        while let Some((low, high, depth)) = open.pop() {
+        while let Some(interval) = open.pop() {
             tried += 1;
             if tried % 256 == 0 && supervision.interrupt.is_requested() {
                 return Err(LawNotProved::Stopped);
             }
-            let by_series = self.error_along(certificate, [&low, &high]);
+            let by_series = self.error_along(certificate, &interval);
             let error = match by_series {
                 // A law without a series, as a root of the variable from zero on, has values.
-                Err(LawNotProved::NoValue(_)) => self.error_between(certificate, [&low, &high]),
+                Err(LawNotProved::NoValue(_)) => {
+                    self.error_between(certificate, interval.ends.each_ref())
+                }
                 by_series => by_series,
             };
+            let is_last = interval.halvings == DEEPEST || tried > MOST;
             match error {
                 Ok(error) if error <= bound => largest = largest.max(error),
                 Err(error @ LawNotProved::Growth(_)) => return Err(error),
-                Err(error) if depth == DEEPEST || tried > MOST => return Err(error),
-                _ if depth == DEEPEST || tried > MOST => {
-                    let place = to_f64(&(&self.middle + &self.half * low));
+                Err(error) if is_last => return Err(error),
+                _ if is_last => {
+                    let place = to_f64(&(&self.middle + &self.half * &interval.ends[0]));
                     let place = if self.scale.is_far { 1.0 / place } else { place };
                     return Err(LawNotProved::Open(decimal(place)));
                 }
-                _ => {
-                    let middle = (&low + &high) / &two;
-                    open.push((middle.clone(), high, depth + 1));
-                    open.push((low, middle, depth + 1));
-                }
+                _ => open.extend([true, false].map(|is_upper| interval.half(is_upper))),
             }
         }
         Ok(largest)
     }
 
-    /// An upper bound of the error between two values of e, from the series of Chebyshev of `law/truth`.
-    fn error_along(
+    /// An upper bound of the error on an interval, from the series of Chebyshev of `law/truth`.
+    fn error_along<S: CosineSeries>(
         &self,
         certificate: &LawCertificate,
-        [low, high]: [&Rational; 2],
+        interval: &PieceInterval<S>,
     ) -> Result<f64, LawNotProved> {
         let no_value = || LawNotProved::NoValue(certificate.law.to_string());
-        let [from, to] = [low, high].map(|e| &self.middle + &self.half * e);
-        let e = line(low, high);
+        let [from, to] = interval.ends.each_ref().map(|e| &self.middle + &self.half * e);
         let mut variable = Variable::along(&from, &to);
-        variable.restitution = self.restitution.as_ref().map(|own| own.along(&e));
-        let quotient = quotient(certificate, self.scale, &self.truth.along(&e), &variable)?;
+        variable.restitution = interval.restitution.clone();
+        let quotient = quotient(certificate, self.scale, &interval.truth, &variable)?;
         let quotient = quotient.ok_or_else(no_value)?;
-        Ok(largest_value(&quotient.difference(&FourierSeries::integer(1))).value())
+        Ok(quotient.difference(&<S as Analytic>::integer(1)).largest_value().value())
     }
 
     /// An upper bound of the error between two values of e, by the mean value form or from the values on

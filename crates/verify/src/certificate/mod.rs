@@ -27,6 +27,7 @@
 mod approximate_inverse;
 mod candidate;
 mod damped;
+mod double_series;
 mod elementary;
 mod force;
 mod formula;

@@ -5,11 +5,13 @@
 //! are found anew each time: a search in the lattice of short numbers, not rounding one by one. The
 //! cost is that of some hundreds of fits.
 
+use std::cmp::Ordering;
+
 use num_traits::{One as _, Zero as _};
 
 use super::formula::{length, text_of_number};
 use super::minimax::{Fit, FitSteps, MOST_CONSTANTS, QuotientOfSums};
-use crate::decimal::{neighbours, rounded_fraction};
+use crate::decimal::{self, ShortDecimal, neighbours, rounded_fraction};
 use crate::exact::Rational;
 use crate::exact::rational::{from_f64, ratio, to_f64};
 
@@ -44,13 +46,39 @@ struct Partial {
 pub(super) fn short_numbers(value: f64, error: f64) -> Vec<(Rational, usize)> {
     let digits = (-error.log10()).ceil() + 2.0;
     let most = (digits.clamp(LEAST_DIGITS as f64, MOST_DIGITS as f64)) as usize;
-    let Some(exact) = from_f64(value) else { return vec![] };
-    if exact.is_zero() {
+    if value == 0.0 || !value.is_finite() {
         return vec![];
     }
-    let decimals = (1..=most).flat_map(|digits| neighbours(&exact, digits));
-    // Fractions of one digit over one or two.
-    let size = value.abs();
+    let (size, is_negative) = (value.abs(), value < 0.0);
+    let fractions = short_fractions(size);
+    let decimals = (1..=most).map(|digits| neighbouring_decimals(size, digits));
+    let decimals: Option<Vec<[(i64, i64); 2]>> = decimals.collect();
+    let all = decimals.and_then(|decimals| {
+        let all = decimals.into_iter().flatten().chain(fractions.iter().copied());
+        let all = all.filter(|(above, _)| *above != 0);
+        let with_length = |(above, below)| {
+            let own = ratio_in_lowest_terms(above, below);
+            Some((own, length_of_quotient(own)?))
+        };
+        all.map(with_length).collect::<Option<Vec<_>>>()
+    });
+    let Some(mut all) = all else { return numbers_of_any_size(value, most, &fractions) };
+    all.sort_by(|((a, b), one), ((c, d), other)| {
+        let product = |left: i64, right: i64| i128::from(left) * i128::from(right);
+        let order = product(*a, *d).cmp(&product(*c, *b));
+        let order = if is_negative { order.reverse() } else { order };
+        order.then(one.cmp(other))
+    });
+    all.dedup();
+    let sign = if is_negative { -1 } else { 1 };
+    let number = |((above, below), length): ((i64, i64), usize)| {
+        (Rational::new_raw((sign * above).into(), below.into()), length)
+    };
+    all.into_iter().map(number).collect()
+}
+
+/// The fractions of one digit over one or two, or of two over one, that are nearest to a positive number.
+fn short_fractions(size: f64) -> Vec<(i64, i64)> {
     let mut fractions: Vec<(f64, i64, i64)> = (3..100)
         .filter_map(|below| {
             let above = (size * below as f64).round() as i64;
@@ -62,9 +90,72 @@ pub(super) fn short_numbers(value: f64, error: f64) -> Vec<(Rational, usize)> {
         }))
         .collect();
     fractions.sort_by(|one, other| (one.0 - size).abs().total_cmp(&(other.0 - size).abs()));
+    fractions.into_iter().take(4).map(|(_, above, below)| (above, below)).collect()
+}
+
+/// The decimals of so many digits next to a positive number, as [`neighbours`] finds them, as quotients; `None` for
+/// numbers that are large or small, or of many digits.
+fn neighbouring_decimals(size: f64, digits: usize) -> Option<[(i64, i64); 2]> {
+    const SIZES: std::ops::Range<f64> = 1e-2..1e5;
+    if !SIZES.contains(&size) || digits > MOST_DIGITS {
+        return None;
+    }
+    // The number is a whole one over 2^places.
+    let (mantissa, exponent, _) = num_traits::Float::integer_decode(size);
+    let places = u32::from(exponent.unsigned_abs());
+    let mut power = size.log10().floor() as i32 - digits as i32 + 1;
+    loop {
+        let ten = 10_u128.pow(power.unsigned_abs());
+        let (above, below) = match power <= 0 {
+            true => (u128::from(mantissa) * ten, 1 << places),
+            false => (u128::from(mantissa), ten << places),
+        };
+        let (down, nearest) = (above / below, (2 * above + below) / (2 * below));
+        match decimal::digits(u64::try_from(nearest).ok()?).cmp(&digits) {
+            Ordering::Greater => power += 1,
+            Ordering::Less => power -= 1,
+            Ordering::Equal => {
+                let ten = i64::try_from(ten).ok()?;
+                let down = i64::try_from(down).ok()?;
+                let up = down + i64::from(above % below != 0);
+                let quotient = |count: i64| match power <= 0 {
+                    true => Some((count, ten)),
+                    false => Some((count.checked_mul(ten)?, 1)),
+                };
+                return Some([quotient(down)?, quotient(up)?]);
+            }
+        }
+    }
+}
+
+/// A quotient of positive numbers in lowest terms.
+fn ratio_in_lowest_terms(above: i64, below: i64) -> (i64, i64) {
+    let shared = num_integer::Integer::gcd(&above, &below);
+    (above / shared, below / shared)
+}
+
+/// The length of the text of a quotient of positive numbers in lowest terms; `None` if that has no short decimal
+/// and may have a long one.
+fn length_of_quotient((above, below): (i64, i64)) -> Option<usize> {
+    let digits = |number: i64| decimal::digits(number.unsigned_abs());
+    let fraction = if below == 1 { digits(above) } else { digits(above) + 1 + digits(below) };
+    match ShortDecimal::of_quotient(above, below) {
+        Some(own) => Some(own.digits().min(fraction)),
+        None if below < 100 => Some(fraction),
+        None => None,
+    }
+}
+
+/// Short numbers about a value of any size, as those of [`short_numbers`].
+fn numbers_of_any_size(
+    value: f64,
+    most: usize,
+    fractions: &[(i64, i64)],
+) -> Vec<(Rational, usize)> {
+    let Some(exact) = from_f64(value) else { return vec![] };
+    let decimals = (1..=most).flat_map(|digits| neighbours(&exact, digits));
     let sign = if value < 0.0 { -1 } else { 1 };
-    let fractions =
-        fractions.into_iter().take(4).map(|(_, above, below)| ratio(sign * above, below));
+    let fractions = fractions.iter().map(|(above, below)| ratio(sign * above, *below));
     let mut all: Vec<(Rational, usize)> = decimals
         .chain(fractions)
         .filter(|number| !number.is_zero())
@@ -246,4 +337,24 @@ pub(super) fn rounded_error(error: f64) -> Rational {
     let bound = from_f64(error * ABOVE).unwrap_or_else(Rational::one);
     let [_, above] = neighbours(&bound, DIGITS);
     rounded_fraction(&above, DIGITS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against fractions of any size, about numbers with few digits and many.
+    #[test]
+    fn short_numbers_are_those_of_any_size() {
+        let values =
+            [0.5, 0.02, 0.0999, 0.96, 9.96, 1.0, 12.5, 0.125, 1.0 / 3.0, 2.0 / 7.0, 99_999.5];
+        let others = [std::f64::consts::PI, 0.707_106_781_186_547_6, 1234.567_89, 0.099_96];
+        for value in values.into_iter().chain(others).flat_map(|value| [value, -value]) {
+            for (error, most) in [(1e-2, 4), (3e-5, 7), (1e-11, 12)] {
+                let expected = numbers_of_any_size(value, most, &short_fractions(value.abs()));
+                assert_eq!(short_numbers(value, error), expected, "{value}");
+                assert!(neighbouring_decimals(value.abs(), most).is_some());
+            }
+        }
+    }
 }

@@ -205,7 +205,11 @@ impl Formula {
             Self::Sum(..) | Self::Difference(..) => 1,
             Self::Product(..) | Self::Quotient(..) => 2,
             Self::Number(number) if number.is_negative() => 1,
-            Self::Number(number) if text_of_number(number).contains('/') => 2,
+            Self::Number(number)
+                if !number.is_integer() && text_of_number(number).contains('/') =>
+            {
+                2
+            }
             Self::Power(_, exponent) if is_half(exponent) => 4,
             Self::Power(_, exponent) if exponent.is_negative() && shows_divisor(exponent) => 2,
             Self::Power(..) => 3,
@@ -273,18 +277,34 @@ impl fmt::Display for Formula {
 }
 
 impl Formula {
-    /// The value, with the values of the names.
-    pub fn value(&self, names: &dyn Fn(Symbol) -> f64) -> f64 {
+    /// The values at so many places, with those of the names.
+    pub fn values(&self, names: &dyn Fn(Symbol) -> Vec<f64>, count: usize) -> Vec<f64> {
+        let both = |left: &Self, right: &Self, operation: fn(f64, f64) -> f64| {
+            let mut values = left.values(names, count);
+            let others = right.values(names, count);
+            values.iter_mut().zip(others).for_each(|(own, other)| *own = operation(*own, other));
+            values
+        };
+        let each = |part: &Self, operation: &dyn Fn(f64) -> f64| {
+            let mut values = part.values(names, count);
+            values.iter_mut().for_each(|own| *own = operation(*own));
+            values
+        };
         match self {
-            Self::Number(number) => to_f64(number),
+            Self::Number(number) => vec![to_f64(number); count],
             Self::Name(name) => names(*name),
-            Self::Sum(left, right) => left.value(names) + right.value(names),
-            Self::Difference(left, right) => left.value(names) - right.value(names),
-            Self::Product(left, right) => left.value(names) * right.value(names),
-            Self::Quotient(left, right) => left.value(names) / right.value(names),
-            Self::Power(base, exponent) if exponent.is_zero() => base.value(names) * 0.0 + 1.0,
-            Self::Power(base, exponent) => base.value(names).powf(to_f64(exponent)),
-            Self::Logarithm(argument) => argument.value(names).ln(),
+            Self::Sum(left, right) => both(left, right, |a, b| a + b),
+            Self::Difference(left, right) => both(left, right, |a, b| a - b),
+            Self::Product(left, right) => both(left, right, |a, b| a * b),
+            Self::Quotient(left, right) => both(left, right, |a, b| a / b),
+            Self::Power(base, exponent) if exponent.is_zero() => {
+                each(base, &|base| base * 0.0 + 1.0)
+            }
+            Self::Power(base, exponent) => {
+                let exponent = to_f64(exponent);
+                each(base, &|base| base.powf(exponent))
+            }
+            Self::Logarithm(argument) => each(argument, &f64::ln),
         }
     }
 }

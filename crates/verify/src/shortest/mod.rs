@@ -135,13 +135,13 @@ impl Front {
     /// contact where that is what has a range.
     pub fn errors_along(&self, law: &ShortLaw) -> Vec<(f64, f64)> {
         let names: Vec<Symbol> = self.atoms.iter().map(|atom| atom.name).collect();
-        let value = |place: usize| self.data.value(&law.formula, &names, place);
+        let values = self.data.values_of(&law.formula, &names, 1);
         let along = match self.problem.abscissa() == self.problem.variable {
             true => &self.data.truth.places,
             false => &self.data.truth.restitutions,
         };
-        let errors = self.data.values.iter().enumerate();
-        errors.map(|(i, truth)| (along[i], value(i) / truth - 1.0)).collect()
+        let errors = values.iter().zip(&self.data.values).map(|(value, truth)| value / truth - 1.0);
+        along.iter().copied().zip(errors).collect()
     }
 
     /// The shortest law whose largest error is at most this, proved where there is a proof.
@@ -216,11 +216,14 @@ impl SearchData {
         values.iter().step_by((PLACES - 1) / (count - 1)).copied().collect()
     }
 
-    /// A formula at a place.
-    fn value(&self, formula: &Formula, names: &[Symbol], place: usize) -> f64 {
-        formula.value(&|name| {
-            names.iter().position(|own| *own == name).map_or(f64::NAN, |i| self.atoms[i][place])
-        })
+    /// A formula at every so many-th place.
+    fn values_of(&self, formula: &Formula, names: &[Symbol], step: usize) -> Vec<f64> {
+        let count = self.values.len().div_ceil(step);
+        let values = |name| match names.iter().position(|own| *own == name) {
+            Some(i) => self.atoms[i].iter().step_by(step).copied().collect(),
+            None => vec![f64::NAN; count],
+        };
+        formula.values(&values, count)
     }
 
     /// The largest error of a published formula, whose letters are those of the atoms.
@@ -249,8 +252,9 @@ impl SearchData {
     /// The largest relative error of a formula, and where it is.
     fn largest_error(&self, formula: &Formula, names: &[Symbol]) -> (f64, f64) {
         let mut largest = (0.0, self.truth.places[0]);
-        for place in 0..self.values.len() {
-            let error = (self.value(formula, names, place) / self.values[place] - 1.0).abs();
+        let values = self.values_of(formula, names, 1);
+        for (place, (value, truth)) in values.iter().zip(&self.values).enumerate() {
+            let error = (value / truth - 1.0).abs();
             if error.is_nan() {
                 return (f64::INFINITY, self.truth.places[place]);
             }
@@ -348,15 +352,17 @@ impl SearchQuestion<'_> {
     /// numbers; not a number where it has none.
     fn growth(&self, formula: &Formula) -> f64 {
         const FAR: [f64; 2] = [1e30, 1e31];
-        let [near, far] = FAR.map(|place| {
-            formula.value(&|name| {
-                let atom = self.atoms.iter().find(|atom| atom.name == name);
-                let meaning = atom.and_then(|atom| atom.meaning.as_ref());
-                let values = BTreeMap::from([(self.problem.variable, place)]);
+        let values = |name| {
+            let atom = self.atoms.iter().find(|atom| atom.name == name);
+            let meaning = atom.and_then(|atom| atom.meaning.as_ref());
+            let value = |place: &f64| {
+                let values = BTreeMap::from([(self.problem.variable, *place)]);
                 meaning.and_then(|meaning| meaning.evaluate(&values).ok()).unwrap_or(f64::NAN)
-            })
-        });
-        (far / near).abs().log10()
+            };
+            FAR.iter().map(value).collect()
+        };
+        let values = formula.values(&values, FAR.len());
+        (values[1] / values[0]).abs().log10()
     }
 
     /// The first coefficients of a formula in powers of the variable; empty without a condition at rest,
@@ -408,8 +414,7 @@ fn laws(
         .into_iter()
         .map(|tree| {
             let formula = trees.formula(tree);
-            let places = (0..PLACES).step_by(step);
-            let values = places.map(|place| data.value(&formula, &names, place)).collect();
+            let values = data.values_of(&formula, &names, step);
             let (series, growth) = (question.series(&formula), question.growth(&formula));
             let term_length = formula.clone().times(&Rational::from_integer(7.into())).length();
             ShortFunction { formula, term_length, values, growth, series }

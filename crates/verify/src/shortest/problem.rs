@@ -23,7 +23,7 @@ use crate::parallel::par_map;
 use crate::solution::{AmplitudeConvention, Solution};
 use crate::symbol::{Symbol, fresh};
 use crate::values::Values;
-use crate::verify::{VerificationError, judge_motion, mode_frequencies};
+use crate::verify::{VerificationError, mode_frequencies, true_frequency};
 
 /// A quantity that stands in formulas as one name.
 #[derive(Clone, Debug, PartialEq)]
@@ -480,8 +480,6 @@ impl LawProblem {
         (oscillator, start, solution): (&Oscillator, Option<&StartOfLaw>, &Solution),
         place: f64,
     ) -> Result<f64, ShortestError> {
-        /// Every formula passes: the truth alone is asked for.
-        const ANY: f64 = 1.0;
         let at = || decimal(place);
         let _letters = solution.letters().in_force();
         let mut values = Values::default();
@@ -498,8 +496,7 @@ impl LawProblem {
             Some(StartOfLaw::Variable) => insert(AmplitudeConvention::Initial.symbol(), exact),
             None => insert(self.variable, exact),
         }
-        let judged = judge_motion(oscillator, solution, &values, ANY);
-        let frequency = judged.map(|judged| judged.true_frequency).map_err(|reason| {
+        let frequency = true_frequency(oscillator, solution, &values).map_err(|reason| {
             ShortestError::Truth { variable: self.variable, at: at(), reason: Box::new(reason) }
         })?;
         match frequency.is_normal() {

@@ -241,6 +241,47 @@ pub fn judge_motion(
     judge_with(oscillator, solution, at, (tolerance, VerificationScope::Motion))
 }
 
+/// The true angular frequency that [`judge_motion`] finds, without the path of the motion where that is not needed.
+///
+/// # Errors
+/// As for [`judge`].
+pub(crate) fn true_frequency(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    at: &Values,
+) -> Result<f64, VerificationError> {
+    /// Every formula passes: the truth alone is asked for.
+    const ANY: f64 = 1.0;
+    match directly_known_frequency(oscillator, solution, at) {
+        Some(frequency) => Ok(frequency),
+        None => judge_motion(oscillator, solution, at, ANY).map(|judged| judged.true_frequency),
+    }
+}
+
+/// The true angular frequency of a motion in the coordinate and with the amplitude of its formula; `None` for all
+/// others, and where it is not found.
+fn directly_known_frequency(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    at: &Values,
+) -> Option<f64> {
+    let _letters = solution.letters().in_force();
+    let is_converted = in_another_coordinate(oscillator, solution).ok()?.is_some()
+        || in_convention_of(oscillator, solution, at).ok()?.is_some();
+    let is_special =
+        solution.in_time().is_some() || solution.response.is_some() || solution.slow().is_some();
+    if is_converted || is_special || off_cycle(solution, at).is_some() {
+        return None;
+    }
+    let settled = on_cycle(solution, at);
+    let solution = settled.as_ref().unwrap_or(solution);
+    periodic(solution).ok()?;
+    let numbers = checked_numbers(solution, at).ok()?;
+    check_digits(oscillator, solution, &numbers).ok()?;
+    let meant = orbit_target(oscillator, solution, &numbers);
+    orbit::true_frequency(oscillator, &meant, &numbers).ok()
+}
+
 /// The extent of a verification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum VerificationScope {

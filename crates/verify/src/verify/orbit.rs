@@ -368,8 +368,8 @@ pub(super) fn true_frequency(
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<f64, VerificationError> {
     let physics = NumericOscillator::new(oscillator, meant, numbers)?;
-    match meant.limit_cycle {
-        Some(_) => TrueMotion::follow(oscillator, meant, numbers).map(|truth| truth.frequency),
+    match &meant.limit_cycle {
+        Some(near) => Ok(TAU / physics.limit_cycle(near)?.period()),
         None => physics.frequency(meant.amplitude_at(numbers)),
     }
 }

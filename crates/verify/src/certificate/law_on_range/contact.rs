@@ -20,9 +20,9 @@
 use num_traits::{Signed as _, ToPrimitive as _};
 
 use super::super::coordinate;
-use super::super::elementary::Analytic as _;
 use super::super::force::function_of;
-use super::super::fourier_series::{FourierSeries, WORKING};
+use super::super::fourier_series::WORKING;
+use super::cosine_series::CosineSeries;
 use super::inverse_frequency::Extent;
 use super::jet::{Jet, LawValues as _, widened};
 use crate::exact::ball::Ball;
@@ -125,10 +125,10 @@ impl ContactMean {
     }
 
     /// c v, and `a = log(1 + c v)` with its derivative by v.
-    pub(super) fn start(&self, speed: &Ball) -> Option<[Ball; 2]> {
+    pub(super) fn start<S: CosineSeries>(&self, speed: &Ball) -> Option<[Ball; 2]> {
         let damping = WORKING.fraction(&self.damping);
         let whole = WORKING.sum(&WORKING.integer(1), &WORKING.product(&damping, speed));
-        let log = function_of(Function::Log, &FourierSeries::constant(whole.clone()))?;
+        let log = function_of(Function::Log, &S::constant(whole.clone()))?;
         Some([log.at_zero(), WORKING.quotient(&damping, &whole)?])
     }
 
@@ -137,15 +137,15 @@ impl ContactMean {
     }
 
     /// `G^(-nu)`.
-    pub(super) fn weighted(&self, rate: &FourierSeries) -> Option<FourierSeries> {
+    pub(super) fn weighted<S: CosineSeries>(&self, rate: &S) -> Option<S> {
         let [times, degree] = self.power;
         Some(rate.inverse_root(degree)?.power(times))
     }
 
     /// T/T_0 and e of a swing with this `G^(-nu)`, to the turning point b.
-    pub(super) fn values(
+    pub(super) fn values<S: CosineSeries>(
         &self,
-        weighted: &FourierSeries,
+        weighted: &S,
         (extent, end): (&Extent, &Ball),
         speed: &Ball,
     ) -> Option<[Ball; 2]> {
@@ -153,13 +153,13 @@ impl ContactMean {
         let ratio = Jet::constant(WORKING.quotient(&extent.radius, &scaled)?);
         let factor = ratio.to_power(&self.weight)?.value;
         let duration = WORKING.product(&factor, &self.mean(weighted));
-        Some([duration, self.restitution(end, &scaled)?])
+        Some([duration, self.restitution::<S>(end, &scaled)?])
     }
 
     /// Bounds of |T/T_0| and |e| on a disc of complex speeds.
-    pub(super) fn bounds(
+    pub(super) fn bounds<S: CosineSeries>(
         &self,
-        weighted: &FourierSeries,
+        weighted: &S,
         (extent, end): (&Extent, &Ball),
         speed: &Ball,
     ) -> Option<[Bound; 2]> {
@@ -170,7 +170,7 @@ impl ContactMean {
             false => WORKING.quotient(&extent.radius, &scaled)?,
         };
         let factor = WORKING.magnitude(&ratio).max(Bound::exactly(1.0));
-        let restitution = self.restitution(end, &scaled)?;
+        let restitution = self.restitution::<S>(end, &scaled)?;
         Some([factor * weighted.norm(), WORKING.magnitude(&restitution)])
     }
 
@@ -192,7 +192,7 @@ impl ContactMean {
     /// ```
     pub(super) fn bounds_about_rest(
         &self,
-        weighted: &FourierSeries,
+        weighted: &impl CosineSeries,
         w: Bound,
         speed: &Rational,
     ) -> Option<[Bound; 2]> {
@@ -215,14 +215,14 @@ impl ContactMean {
         bounds.iter().all(|bound| *bound < Bound::UNKNOWN).then_some(bounds)
     }
 
-    fn restitution(&self, end: &Ball, scaled: &Ball) -> Option<Ball> {
-        let exponential = function_of(Function::Exp, &FourierSeries::constant(end.clone()))?;
+    fn restitution<S: CosineSeries>(&self, end: &Ball, scaled: &Ball) -> Option<Ball> {
+        let exponential = function_of(Function::Exp, &S::constant(end.clone()))?;
         let lost = WORKING.difference(&WORKING.integer(1), &exponential.at_zero());
         WORKING.quotient(&lost, scaled)
     }
 
     /// The mean of a series with the weight; no |M_k| is larger than one.
-    fn mean(&self, series: &FourierSeries) -> Ball {
+    fn mean(&self, series: &impl CosineSeries) -> Ball {
         let whole = |k: usize| Rational::from_integer(Integer::from(k as u64));
         let (mut sum, mut moment) = (Ball::zero(), WORKING.integer(1));
         for k in (0..series.length()).step_by(2) {
@@ -230,7 +230,7 @@ impl ContactMean {
             let next = (whole(k) - &self.weight) / (whole(k + 2) + &self.weight);
             moment = WORKING.product(&moment, &WORKING.fraction(&next));
         }
-        widened(&sum, series.tail)
+        widened(&sum, series.tail())
     }
 }
 

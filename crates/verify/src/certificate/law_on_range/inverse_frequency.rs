@@ -9,15 +9,17 @@
 //! `law_on_range`.
 
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 use num_traits::Zero as _;
 
 use super::super::coordinate;
-use super::super::elementary::Analytic as _;
-use super::super::force::{along, along_all, is_odd};
-use super::super::fourier_series::{FourierSeries, WORKING};
+use super::super::double_series::{DoubleSeries, ball, nearest};
+use super::super::force::{along_all, is_odd};
+use super::super::fourier_series::WORKING;
 use super::contact::{self, ContactMean};
-use super::jet::{DIGITS, Jet, widened};
+use super::cosine_series::CosineSeries;
+use super::jet::{Jet, widened};
 use super::{LawNotProved, StartOfLaw};
 use crate::conservative::CentredForce;
 use crate::exact::ball::Ball;
@@ -83,14 +85,17 @@ pub(super) struct TruthPiece {
 pub(super) struct PiecePolynomial {
     /// Its coefficients, the constant first.
     coefficients: Vec<Ball>,
+    /// Those of the same polynomial in Chebyshev's polynomials.
+    chebyshev: Vec<Ball>,
     /// Bound of the distance of the quantity from the polynomial.
     pub(super) remainder: Bound,
 }
 
 impl PiecePolynomial {
     /// The polynomial with these coefficients, the constant first.
-    pub(super) const fn new(coefficients: Vec<Ball>, remainder: Bound) -> Self {
-        Self { coefficients, remainder }
+    pub(super) fn new(coefficients: Vec<Ball>, remainder: Bound) -> Self {
+        let chebyshev = in_chebyshev_polynomials(&coefficients);
+        Self { coefficients, chebyshev, remainder }
     }
 
     /// All numbers of the ball that a value may be.
@@ -99,13 +104,9 @@ impl PiecePolynomial {
         Jet { value: widened(&own.value, self.remainder), ..own }
     }
 
-    /// The series of Chebyshev of the quantity where e is this series.
-    pub(super) fn along(&self, e: &FourierSeries) -> FourierSeries {
-        let none = FourierSeries::constant(Ball::zero());
-        let value = self.coefficients.iter().rev().fold(none, |value, coefficient| {
-            value.product(e).sum(&FourierSeries::constant(coefficient.clone()))
-        });
-        value.widened(self.remainder)
+    /// The series of Chebyshev of the quantity on the piece.
+    pub(super) fn series<S: CosineSeries>(&self) -> S {
+        S::of_balls(self.chebyshev.clone()).widened(self.remainder)
     }
 
     /// The polynomial and its derivative by the variable, on a piece of this half width.
@@ -119,6 +120,27 @@ impl PiecePolynomial {
         let slope = slope.unwrap_or(Ball { middle: Integer::zero(), radius: Bound::UNKNOWN });
         Jet { value, slope }
     }
+}
+
+/// The coefficients of a polynomial in Chebyshev's polynomials, by Horner's scheme: `2 x T_j = T_(j + 1) + T_|j - 1|`.
+fn in_chebyshev_polynomials(coefficients: &[Ball]) -> Vec<Ball> {
+    let mut sum: Vec<Ball> = vec![];
+    for coefficient in coefficients.iter().rev() {
+        let mut next = vec![Ball::zero(); sum.len() + 1];
+        for (j, own) in sum.iter().enumerate() {
+            let (own, half) = (own, WORKING.divided(own, 2));
+            let both: &[(usize, &Ball)] = match j {
+                0 => &[(1, own)],
+                _ => &[(j + 1, &half), (j - 1, &half)],
+            };
+            for (place, part) in both {
+                next[*place] = WORKING.sum(&next[*place], part);
+            }
+        }
+        next[0] = WORKING.sum(&next[0], coefficient);
+        sum = next;
+    }
+    sum
 }
 
 /// Number of places at which `1/omega` is computed on a piece, and the ratio of the radius of the disc
@@ -140,9 +162,16 @@ pub(super) struct Extent {
     pub(super) radius: Ball,
 }
 
+/// The turning points of a motion, to the digits of doubles: those of others near it are alike.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turns {
+    start: f64,
+    end: f64,
+}
+
 /// G on a disc of complex values of the variable.
-struct RateOnDisc {
-    rate: FourierSeries,
+struct RateOnDisc<S> {
+    rate: S,
     /// The motions of the disc.
     extent: Extent,
     /// Their other turning points.
@@ -193,7 +222,7 @@ impl ForceOnRange {
     }
 
     /// The pieces of a range, each as wide as a bound on a disc about it allows.
-    pub(super) fn pieces(
+    pub(super) fn pieces<S: CosineSeries>(
         &self,
         from: &Rational,
         to: &Rational,
@@ -202,17 +231,16 @@ impl ForceOnRange {
         let steps = 1_u32 << THINNEST;
         let place =
             |position: u32| from + (to - from) * Rational::new(position.into(), steps.into());
-        let nodes = nodes();
-        let product = largest_product(&nodes);
-        let (mut position, mut width) = (0, steps / 4);
+        let (mut position, mut width, mut turns) = (0, steps / 4, None);
         let mut pieces = vec![];
         while position < steps {
             if supervision.interrupt.is_requested() {
                 return Err(LawNotProved::Stopped);
             }
             let next = (position + width).min(steps);
-            match self.piece([&place(position), &place(next)], &nodes, product) {
-                Ok(piece) => {
+            match self.piece::<S>([&place(position), &place(next)], turns) {
+                Ok((piece, own)) => {
+                    turns = own;
                     pieces.push(piece);
                     (position, width) = (next, 2 * width);
                 }
@@ -228,41 +256,50 @@ impl ForceOnRange {
     /// Chebyshev. With `|1/omega| <= M` on the disc of radius rho about the middle and `|v - middle| <=
     /// h`, it is off by at most `M rho/(rho - h) max |w(v)|/(rho - h)^n`, w the product of the distances
     /// from the points.
-    fn piece(
+    fn piece<S: CosineSeries>(
         &self,
         [from, to]: [&Rational; 2],
-        nodes: &[Rational],
-        largest_product: Bound,
-    ) -> Result<TruthPiece, LawNotProved> {
+        near: Option<Turns>,
+    ) -> Result<(TruthPiece, Option<Turns>), LawNotProved> {
         let two = Integer::from(2);
         let (middle, half) = ((from + to) / &two, (to - from) / &two);
         let radius = &half * Integer::from(WIDER);
         let begins_at_rest = self.start == StartOfLaw::Variable && from.is_zero();
+        let turns = match self.is_odd {
+            true => None,
+            false => {
+                let place = WORKING.fraction(&middle);
+                let [start, _] = self.start::<S>(&place)?;
+                let end = self.turning_point::<S>(&place, &start, near)?;
+                Some(Turns { start: nearest(&start), end: nearest(&end) })
+            }
+        };
         let largest = match begins_at_rest {
-            true => self.bound_about_rest(&(&radius + &middle))?,
-            false => self.bound_on_disc(&middle, &radius)?,
+            true => self.bound_about_rest::<S>(&(&radius + &middle))?,
+            false => self.bound_on_disc::<S>(&middle, &radius, turns)?,
         };
         let place = |node: &Rational| WORKING.fraction(&(&middle + &half * node));
-        let values = par_map(nodes, |node| self.truth(&place(node)));
+        let values = par_map(&INTERPOLATION.nodes, |node| self.truth::<S>(&place(node), turns));
         let values = values.into_iter().collect::<Result<Vec<Vec<Ball>>, _>>()?;
         let quantity = |number: usize, largest: &Bound| {
-            let values = values.iter().filter_map(|all| all.get(number).cloned()).collect();
-            let coefficients = interpolated(nodes, values);
-            let remainder = interpolation_error(*largest, largest_product);
-            PiecePolynomial { coefficients, remainder }
+            let values: Vec<&Ball> = values.iter().filter_map(|all| all.get(number)).collect();
+            let (coefficients, uncertainty) = INTERPOLATION.polynomial(&values);
+            let remainder = interpolation_error(*largest, INTERPOLATION.largest_product);
+            PiecePolynomial::new(coefficients, remainder + uncertainty)
         };
         let mut quantities = largest.iter().enumerate().map(|(i, bound)| quantity(i, bound));
         let none = || LawNotProved::NoValue("1/omega".to_owned());
         let truth = quantities.next().ok_or_else(none)?;
-        Ok(TruthPiece { scale: self.scale, middle, half, truth, restitution: quantities.next() })
+        let restitution = quantities.next();
+        Ok((TruthPiece { scale: self.scale, middle, half, truth, restitution }, turns))
     }
 
     /// x(0) with the variable in a ball, and its derivative by the variable.
-    fn start(&self, variable: &Ball) -> Result<[Ball; 2], LawNotProved> {
+    fn start<S: CosineSeries>(&self, variable: &Ball) -> Result<[Ball; 2], LawNotProved> {
         match (&self.contact, &self.start) {
             (Some(contact), _) => {
                 let none = || LawNotProved::NoValue("log(1 + c*v)".to_owned());
-                contact.start(variable).ok_or_else(none)
+                contact.start::<S>(variable).ok_or_else(none)
             }
             (None, StartOfLaw::Variable) => Ok([variable.clone(), WORKING.integer(1)]),
             (None, StartOfLaw::Fixed(start)) => Ok([WORKING.fraction(start), Ball::zero()]),
@@ -271,41 +308,48 @@ impl ForceOnRange {
 
     /// An expression along a motion with the variable in a ball; the second extent is the derivative
     /// of the first by the variable.
-    fn along(
+    fn along<S: CosineSeries>(
         &self,
         expression: &Expr,
         variable: &Ball,
         [extent, change]: [&Extent; 2],
-    ) -> Result<FourierSeries, LawNotProved> {
-        let series = |extent: &Extent| {
-            let cosines = vec![extent.middle.clone(), extent.radius.clone()];
-            FourierSeries::exactly(cosines, vec![]).of_digits(DIGITS)
-        };
+    ) -> Result<S, LawNotProved> {
+        let series =
+            |extent: &Extent| S::of_balls(vec![extent.middle.clone(), extent.radius.clone()]);
         let (motion, change) = (series(extent), series(change));
-        let variable = FourierSeries::constant(variable.clone());
+        let variable = S::constant(variable.clone());
         let letters = [(coordinate(), &motion), (moving(), &change), (self.variable, &variable)];
         Ok(along_all(expression, &letters)?)
     }
 
     /// An expression at a place of the coordinate.
-    fn at(&self, expression: &Expr, variable: &Ball, place: &Ball) -> Result<Ball, LawNotProved> {
+    fn at<S: CosineSeries>(
+        &self,
+        expression: &Expr,
+        variable: &Ball,
+        place: &Ball,
+    ) -> Result<Ball, LawNotProved> {
         let there = Extent { middle: place.clone(), radius: Ball::zero() };
         let nothing = Extent::of_odd(Ball::zero());
-        Ok(self.along(expression, variable, [&there, &nothing])?.at_zero())
+        Ok(self.along::<S>(expression, variable, [&there, &nothing])?.at_zero())
     }
 
     /// The stiffness at rest, a constant.
-    fn stiffness(&self, variable: &Ball) -> Result<FourierSeries, LawNotProved> {
-        Ok(FourierSeries::constant(self.at(&self.by_place, variable, &Ball::zero())?))
+    fn stiffness<S: CosineSeries>(&self, variable: &Ball) -> Result<S, LawNotProved> {
+        Ok(S::constant(self.at::<S>(&self.by_place, variable, &Ball::zero())?))
     }
 
     /// The motion at a value of the variable.
-    fn extent(&self, place: &Ball) -> Result<Extent, LawNotProved> {
-        let [start, _] = self.start(place)?;
+    fn extent<S: CosineSeries>(
+        &self,
+        place: &Ball,
+        near: Option<Turns>,
+    ) -> Result<Extent, LawNotProved> {
+        let [start, _] = self.start::<S>(place)?;
         match self.is_odd {
             true => Ok(Extent::of_odd(start)),
             false => {
-                let end = self.turning_point(place, &start)?;
+                let end = self.turning_point::<S>(place, &start, near)?;
                 Ok(Extent::between(&start, &end))
             }
         }
@@ -313,42 +357,80 @@ impl ForceOnRange {
 
     /// The other turning point: a number in doubles, improved by Newton's iteration on `V(a) - V(b)`,
     /// whose derivative by b is -f(b), and then the interval in which that has its zero.
-    fn turning_point(&self, place: &Ball, start: &Ball) -> Result<Ball, LawNotProved> {
+    fn turning_point<S: CosineSeries>(
+        &self,
+        place: &Ball,
+        start: &Ball,
+        near: Option<Turns>,
+    ) -> Result<Ball, LawNotProved> {
         const STEPS: usize = 1;
         let none = || LawNotProved::NoValue("the turning point".to_owned());
-        let numbers = BTreeMap::from([(self.variable, WORKING.nearest(place))]);
-        let from = WORKING.nearest(start);
-        let force = CentredForce::new(&self.force, coordinate(), &Expr::zero(), &numbers, from);
-        let end = force.and_then(|force| force.turning_point(from).ok()).and_then(from_f64);
-        let mut end = WORKING.fraction(&end.ok_or_else(none)?);
+        let own = || {
+            let numbers = BTreeMap::from([(self.variable, WORKING.nearest(place))]);
+            let from = nearest(start);
+            let force = CentredForce::new(&self.force, coordinate(), &Expr::zero(), &numbers, from);
+            force.and_then(|force| force.turning_point(from).ok())
+        };
+        let end = near.and_then(|near| self.turning_point_near(place, start, near)).or_else(own);
+        let mut end = WORKING.fraction(&end.and_then(from_f64).ok_or_else(none)?);
         let nothing = Extent::of_odd(Ball::zero());
         let mut work = Ball::zero();
         for step in 0..=STEPS {
             let extent = Extent::between(start, &end);
-            let series = self.along(&self.force, place, [&extent, &nothing])?;
+            let series = self.along::<S>(&self.force, place, [&extent, &nothing])?;
             work = WORKING.product(&work_between(&series), &WORKING.scaled(&extent.radius, 2));
             if step < STEPS {
-                let force = self.at(&self.force, place, &end)?;
+                let force = self.at::<S>(&self.force, place, &end)?;
                 let more = WORKING.quotient(&work, &force).ok_or_else(none)?;
                 end = widened(&WORKING.sum(&end, &more), Bound::ZERO);
                 end.radius = Bound::ZERO;
             }
         }
-        let force = WORKING.distance_from_zero(&self.at(&self.force, place, &end)?);
+        let force = WORKING.distance_from_zero(&self.at::<S>(&self.force, place, &end)?);
         let distance = WORKING.magnitude(&work).over(force) * Bound::exactly(2.0);
         let around = widened(&end, distance);
-        let least = WORKING.distance_from_zero(&self.at(&self.force, place, &around)?);
+        let least = WORKING.distance_from_zero(&self.at::<S>(&self.force, place, &around)?);
         match WORKING.magnitude(&work).over(least) < distance {
             true => Ok(around),
             false => Err(none()),
         }
     }
 
-    /// `1/omega` at a place that is not rest, or T/T_0 and the restitution.
-    pub(super) fn truth(&self, place: &Ball) -> Result<Vec<Ball>, LawNotProved> {
-        let extent = self.extent(place)?;
+    /// The same in doubles, by Newton's iteration from that of another motion; `None` if it does not converge.
+    fn turning_point_near(&self, place: &Ball, start: &Ball, near: Turns) -> Option<f64> {
+        const STEPS: usize = 12;
+        const ENOUGH: f64 = 1e-12;
+        let from = nearest(start);
+        let mut end = near.end * (from / near.start);
         let nothing = Extent::of_odd(Ball::zero());
-        let rate = mean_rate(&self.along(&self.force, place, [&extent, &nothing])?);
+        for _ in 0..STEPS {
+            let there = ball(end, Bound::ZERO);
+            let extent = Extent::between(start, &there);
+            let series =
+                self.along::<DoubleSeries>(&self.force, place, [&extent, &nothing]).ok()?;
+            let work = nearest(&work_between(&series)) * (from - end);
+            let force = nearest(&self.at::<DoubleSeries>(&self.force, place, &there).ok()?);
+            let more = work / force;
+            end += more;
+            if end.signum() == from.signum() || !end.is_finite() {
+                return None;
+            }
+            if more.abs() <= ENOUGH * end.abs() {
+                return Some(end);
+            }
+        }
+        None
+    }
+
+    /// `1/omega` at a place that is not rest, or T/T_0 and the restitution.
+    pub(super) fn truth<S: CosineSeries>(
+        &self,
+        place: &Ball,
+        near: Option<Turns>,
+    ) -> Result<Vec<Ball>, LawNotProved> {
+        let extent = self.extent::<S>(place, near)?;
+        let nothing = Extent::of_odd(Ball::zero());
+        let rate = self.along::<S>(&self.force, place, [&extent, &nothing])?.mean_rate();
         let rate = rate.over(&extent.radius);
         let root = self.root(&rate.ok_or_else(|| LawNotProved::NoValue("1/A".to_owned()))?)?;
         let root = self.with_root_of_mass(root, place, &extent)?;
@@ -359,32 +441,32 @@ impl ForceOnRange {
     }
 
     /// The quantities in the limit of small amplitudes.
-    pub(super) fn at_rest(&self) -> Result<Vec<Ball>, LawNotProved> {
+    pub(super) fn at_rest<S: CosineSeries>(&self) -> Result<Vec<Ball>, LawNotProved> {
         match &self.contact {
             Some(_) => Ok(vec![WORKING.integer(1); 2]),
             None => {
                 let (nowhere, still) = (Ball::zero(), Extent::of_odd(Ball::zero()));
-                let root = self.root(&self.stiffness(&nowhere)?)?;
+                let root = self.root::<S>(&self.stiffness(&nowhere)?)?;
                 Ok(vec![mean(&self.with_root_of_mass(root, &nowhere, &still)?)])
             }
         }
     }
 
     /// A series times the root of the mass along a motion.
-    fn with_root_of_mass(
+    fn with_root_of_mass<S: CosineSeries>(
         &self,
-        series: FourierSeries,
+        series: S,
         variable: &Ball,
         extent: &Extent,
-    ) -> Result<FourierSeries, LawNotProved> {
+    ) -> Result<S, LawNotProved> {
         let Some(mass) = &self.mass else { return Ok(series) };
         let nothing = Extent::of_odd(Ball::zero());
         Ok(series.product(&root_of_mass(&self.along(mass, variable, [extent, &nothing])?)?))
     }
 
     /// `G^(-1/2)`, or the power that is that of the contact.
-    fn root(&self, rate: &FourierSeries) -> Result<FourierSeries, LawNotProved> {
-        let rate = rate.clone().of_digits(DIGITS);
+    fn root<S: CosineSeries>(&self, rate: &S) -> Result<S, LawNotProved> {
+        let rate = rate.clone().of_kept_digits();
         let root = match &self.contact {
             Some(contact) => contact.weighted(&rate),
             None => rate.inverse_root(2),
@@ -394,21 +476,22 @@ impl ForceOnRange {
 
     /// Bounds of the sizes of the quantities for all complex values of the variable within a distance of
     /// one: by the mean value theorem, whose norms hold for complex numbers too.
-    fn bound_on_disc(
+    fn bound_on_disc<S: CosineSeries>(
         &self,
         middle: &Rational,
         radius: &Rational,
+        near: Option<Turns>,
     ) -> Result<Vec<Bound>, LawNotProved> {
         let (place, spread) = (WORKING.fraction(middle), Bound::of_fraction(radius));
         let all = widened(&place, spread);
-        let [start, _] = self.start(&all)?;
-        let of_odd = |rate: FourierSeries| RateOnDisc {
+        let [start, _] = self.start::<S>(&all)?;
+        let of_odd = |rate: S| RateOnDisc {
             rate,
             extent: Extent::of_odd(start.clone()),
             end: WORKING.scaled(&start, -1),
         };
         let on_disc = match (self.is_odd, &self.start) {
-            (false, _) => self.rate_on_disc(&place, &all, spread)?,
+            (false, _) => self.rate_on_disc(&place, &all, spread, near)?,
             (true, StartOfLaw::Fixed(_)) => of_odd(self.rate_by_parameter(&place, &all, spread)?),
             (true, StartOfLaw::Variable) => of_odd(self.rate_by_amplitude(&place, &all, spread)?),
         };
@@ -419,18 +502,18 @@ impl ForceOnRange {
     }
 
     /// G on a disc of a parameter, of an odd force whose motion has one amplitude.
-    fn rate_by_parameter(
+    fn rate_by_parameter<S: CosineSeries>(
         &self,
         place: &Ball,
         all: &Ball,
         spread: Bound,
-    ) -> Result<FourierSeries, LawNotProved> {
-        let (extent, nothing) = (self.extent(place)?, Extent::of_odd(Ball::zero()));
+    ) -> Result<S, LawNotProved> {
+        let (extent, nothing) = (self.extent::<S>(place, None)?, Extent::of_odd(Ball::zero()));
         let at = |expression: &Expr, variable: &Ball| {
-            self.along(expression, variable, [&extent, &nothing])
+            self.along::<S>(expression, variable, [&extent, &nothing])
         };
-        let over = |series: FourierSeries| {
-            let rate = mean_rate(&series).over(&extent.radius);
+        let over = |series: S| {
+            let rate = series.mean_rate().over(&extent.radius);
             rate.ok_or_else(|| LawNotProved::NoValue("1/A".to_owned()))
         };
         let slope = at(&self.slope, place)?.widened(spread * at(&self.curvature, all)?.norm());
@@ -439,28 +522,28 @@ impl ForceOnRange {
 
     /// G on a disc of amplitudes, of an odd force: `G = f'(0) + L[g]/a` with `g = f - f'(0) x`, whose terms
     /// are of the size a^3.
-    fn rate_by_amplitude(
+    fn rate_by_amplitude<S: CosineSeries>(
         &self,
         place: &Ball,
         all: &Ball,
         spread: Bound,
-    ) -> Result<FourierSeries, LawNotProved> {
+    ) -> Result<S, LawNotProved> {
         let change = Extent::of_odd(WORKING.integer(1));
         let at = |expression: &Expr, variable: &Ball| {
             let extent = Extent::of_odd(variable.clone());
-            self.along(expression, variable, [&extent, &change])
+            self.along::<S>(expression, variable, [&extent, &change])
         };
-        let stiffness = self.stiffness(place)?;
-        let subtracted = |series: FourierSeries, size: &Ball| {
-            let line = FourierSeries::exactly(vec![Ball::zero(), size.clone()], vec![]);
+        let stiffness: S = self.stiffness(place)?;
+        let subtracted = |series: S, size: &Ball| {
+            let line = S::of_balls(vec![Ball::zero(), size.clone()]);
             series.difference(&line.product(&stiffness))
         };
         let slope = at(&self.slope, place)?.widened(spread * at(&self.curvature, all)?.norm());
         let own = subtracted(at(&self.force, place)?, place);
         let slope = subtracted(slope, &WORKING.integer(1));
         let own_on_all = own.clone().widened(spread * slope.norm());
-        let over = |series: &FourierSeries, by: &Ball| {
-            let rate = mean_rate(series).over(by);
+        let over = |series: &S, by: &Ball| {
+            let rate = series.mean_rate().over(by);
             rate.ok_or_else(|| LawNotProved::NoValue("1/A".to_owned()))
         };
         let rate = stiffness.sum(&over(&own, place)?);
@@ -471,24 +554,25 @@ impl ForceOnRange {
 
     /// G on a disc, of a force that is not odd: the other turning point b moves by
     /// `b' = (f(a) a' + int_b^a f_p dx)/f(b)`, which is bounded on a disc about it that it does not leave.
-    fn rate_on_disc(
+    fn rate_on_disc<S: CosineSeries>(
         &self,
         place: &Ball,
         all: &Ball,
         spread: Bound,
-    ) -> Result<RateOnDisc, LawNotProved> {
+        near: Option<Turns>,
+    ) -> Result<RateOnDisc<S>, LawNotProved> {
         let none = || LawNotProved::NoValue("the turning point".to_owned());
-        let ([start, _], [start_on_all, change]) = (self.start(place)?, self.start(all)?);
-        let end = self.turning_point(place, &start)?;
+        let ([start, _], [start_on_all, change]) = (self.start::<S>(place)?, self.start::<S>(all)?);
+        let end = self.turning_point::<S>(place, &start, near)?;
         let nothing = Extent::of_odd(Ball::zero());
         let by_variable = self.force.differentiate(self.variable)?;
         let rate_of_end = |end_on_all: &Ball| -> Result<Ball, LawNotProved> {
             let extent = Extent::between(&start_on_all, end_on_all);
-            let by_variable = self.along(&by_variable, all, [&extent, &nothing])?.norm();
+            let by_variable = self.along::<S>(&by_variable, all, [&extent, &nothing])?.norm();
             let length = WORKING.magnitude(&extent.radius) * Bound::exactly(2.0);
-            let force = WORKING.product(&self.at(&self.force, all, &start_on_all)?, &change);
+            let force = WORKING.product(&self.at::<S>(&self.force, all, &start_on_all)?, &change);
             let work = widened(&force, length * by_variable);
-            WORKING.quotient(&work, &self.at(&self.force, all, end_on_all)?).ok_or_else(none)
+            WORKING.quotient(&work, &self.at::<S>(&self.force, all, end_on_all)?).ok_or_else(none)
         };
         // A disc twice as large as the rate at its middle asks for.
         let guess = WORKING.magnitude(&rate_of_end(&end)?) * spread * Bound::exactly(2.0);
@@ -500,12 +584,12 @@ impl ForceOnRange {
         let extent = Extent::between(&start, &end);
         let on_all = Extent::between(&start_on_all, &end_on_all);
         let change = Extent::between(&change, &rate_of_end);
-        let force = self.along(&self.force, place, [&extent, &nothing])?;
-        let slope = self.along(&self.slope, all, [&on_all, &change])?;
+        let force: S = self.along(&self.force, place, [&extent, &nothing])?;
+        let slope: S = self.along(&self.slope, all, [&on_all, &change])?;
         let force_on_all = force.clone().widened(spread * slope.norm());
-        let over = |series: &FourierSeries, by: &Ball| mean_rate(series).over(by).ok_or_else(none);
+        let over = |series: &S, by: &Ball| series.mean_rate().over(by).ok_or_else(none);
         let square = WORKING.product(&on_all.radius, &on_all.radius);
-        let turned = FourierSeries::constant(change.radius.clone());
+        let turned = S::constant(change.radius.clone());
         let by_variable = over(&slope, &on_all.radius)?
             .difference(&over(&force_on_all, &square)?.product(&turned));
         let rate = over(&force, &extent.radius)?.widened(spread * by_variable.norm());
@@ -520,16 +604,19 @@ impl ForceOnRange {
     /// else:   V = f'(0) x^2/2 (1 + e(x)),  |e| <= e_0 = 2 R M/(3 f'(0)),   b = -v u,  u^2 = (1 + e(v))/(1 + e(b)),
     ///         |u - 1| <= w = 2 e_0/(1 - e_0) <= 1,    |G - f'(0)| <= (2/3) R M (1 + w)^2/(1 - w/2)
     /// ```
-    fn bound_about_rest(&self, size: &Rational) -> Result<Vec<Bound>, LawNotProved> {
+    fn bound_about_rest<S: CosineSeries>(
+        &self,
+        size: &Rational,
+    ) -> Result<Vec<Bound>, LawNotProved> {
         let spread = match &self.contact {
             Some(contact) => Bound::of_fraction(&contact.largest_start(size)),
             None => Bound::of_fraction(size),
         };
-        let stiffness = self.stiffness(&Ball::zero())?;
+        let stiffness: S = self.stiffness(&Ball::zero())?;
         let nothing = Extent::of_odd(Ball::zero());
         let bend = |size: Bound| -> Result<Bound, LawNotProved> {
             let all = Extent::of_odd(widened(&Ball::zero(), size));
-            Ok(self.along(&self.bend, &Ball::zero(), [&all, &nothing])?.norm())
+            Ok(self.along::<S>(&self.bend, &Ball::zero(), [&all, &nothing])?.norm())
         };
         let (distance, w) = match self.is_odd {
             true => (spread * bend(spread)? / 2, Bound::ZERO),
@@ -548,8 +635,13 @@ impl ForceOnRange {
         };
         let root = self.root(&stiffness.widened(distance))?;
         // Both turning points are within 2 R of rest, and the coefficients of the motion within 3 R in all.
-        let motion = FourierSeries::constant(Ball::zero()).widened(spread * Bound::exactly(3.0));
-        let root = match self.mass.as_ref().map(|mass| along(mass, &motion)).transpose()? {
+        let motion = S::constant(Ball::zero()).widened(spread * Bound::exactly(3.0));
+        let root = match self
+            .mass
+            .as_ref()
+            .map(|mass| along_all(mass, &[(coordinate(), &motion)]))
+            .transpose()?
+        {
             Some(mass) => root.product(&root_of_mass(&mass)?),
             None => root,
         };
@@ -576,29 +668,69 @@ impl Extent {
 
 /// `F_0 - sum_q F_2q/(4 q^2 - 1)`, the work between two turning points over twice their distance from
 /// the middle.
-fn work_between(force: &FourierSeries) -> Ball {
+fn work_between(force: &impl CosineSeries) -> Ball {
     let mut sum = force.cosine(0);
     for k in (2..force.length()).step_by(2) {
         let divisor = u32::try_from(k * k - 1).unwrap_or(u32::MAX);
         sum = WORKING.difference(&sum, &WORKING.divided(&force.cosine(k), divisor));
     }
-    widened(&sum, force.tail)
+    widened(&sum, force.tail())
 }
 
 /// `M^(1/2)`.
-fn root_of_mass(mass: &FourierSeries) -> Result<FourierSeries, LawNotProved> {
+fn root_of_mass<S: CosineSeries>(mass: &S) -> Result<S, LawNotProved> {
     let inverse = mass.inverse_root(2);
     let inverse = inverse.ok_or_else(|| LawNotProved::NoValue("M^(1/2)".to_owned()))?;
     Ok(mass.product(&inverse))
 }
 
-/// Fractions near the points of Chebyshev between -1 and 1.
-fn nodes() -> Vec<Rational> {
+/// Polynomials through values at the nodes of a piece.
+struct Interpolation {
+    /// Fractions near the points of Chebyshev between -1 and 1.
+    nodes: Vec<Rational>,
+    /// A bound of `prod |e - e_j|`.
+    largest_product: Bound,
+    /// The polynomials that are one at one node and zero at the others, their constants first.
+    basis: Vec<Vec<Ball>>,
+    /// Bounds of their sizes.
+    sizes: Vec<Bound>,
+}
+
+static INTERPOLATION: LazyLock<Interpolation> = LazyLock::new(|| {
     let node = |i: usize| {
         let angle = std::f64::consts::PI * (i as f64 + 0.5) / NODES as f64;
         Rational::new(((angle.cos() * 65536.0).round() as i64).into(), 65536.into())
     };
-    (0..NODES).map(node).collect()
+    let nodes: Vec<Rational> = (0..NODES).map(node).collect();
+    let largest_product = largest_product(&nodes);
+    let one_at = |i: usize| {
+        let mut values = vec![Ball::zero(); NODES];
+        values[i] = WORKING.integer(1);
+        interpolated(&nodes, values)
+    };
+    let basis: Vec<Vec<Ball>> = (0..NODES).map(one_at).collect();
+    let size = |coefficients: &Vec<Ball>| {
+        in_chebyshev_polynomials(coefficients).iter().map(|ball| WORKING.magnitude(ball)).sum()
+    };
+    let sizes = basis.iter().map(size).collect();
+    Interpolation { nodes, largest_product, basis, sizes }
+});
+
+impl Interpolation {
+    /// The polynomial through the middles of values at the nodes, and a bound of its distance from that through
+    /// any other numbers of their balls.
+    fn polynomial(&self, values: &[&Ball]) -> (Vec<Ball>, Bound) {
+        let mut coefficients = vec![Ball::zero(); NODES];
+        let mut uncertainty = Bound::ZERO;
+        for ((value, basis), size) in values.iter().zip(&self.basis).zip(&self.sizes) {
+            let middle = Ball { middle: value.middle.clone(), radius: Bound::ZERO };
+            for (coefficient, own) in coefficients.iter_mut().zip(basis) {
+                *coefficient = WORKING.sum(coefficient, &WORKING.product(own, &middle));
+            }
+            uncertainty += value.radius * *size;
+        }
+        (coefficients, uncertainty)
+    }
 }
 
 /// A bound of `prod |e - e_j|` for e between -1 and 1: the largest value at points `1/N` apart, where
@@ -645,28 +777,7 @@ fn interpolated(nodes: &[Rational], mut values: Vec<Ball>) -> Vec<Ball> {
     coefficients
 }
 
-/// `r G` of the series of a force along `m + r cos(theta)`.
-fn mean_rate(force: &FourierSeries) -> FourierSeries {
-    let length = force.length();
-    let mut cosines = vec![Ball::zero(); length.max(1)];
-    // From the highest harmonic down, the sum over k = l + 1, l + 3, ... grows by a term each time; the
-    // two parities take turns.
-    let mut sums = [Ball::zero(), Ball::zero()];
-    for l in (1..length).rev() {
-        let k = l + 1;
-        let sum = &mut sums[l % 2];
-        if k < length {
-            let divisor = u32::try_from(k * k - 1).unwrap_or(u32::MAX);
-            *sum = WORKING.sum(sum, &WORKING.divided(&force.cosine(k), divisor));
-        }
-        cosines[l] = WORKING.scaled(sum, 4 * l as i64);
-    }
-    cosines[0] = force.cosine(1);
-    let tail = force.tail * Bound::exactly(4.0) / 3;
-    FourierSeries::exactly(cosines, vec![]).widened(tail).of_digits(DIGITS)
-}
-
 /// The mean of a series.
-fn mean(series: &FourierSeries) -> Ball {
-    widened(&series.cosine(0), series.tail)
+fn mean(series: &impl CosineSeries) -> Ball {
+    widened(&series.cosine(0), series.tail())
 }

@@ -7,8 +7,10 @@
 
 use num_traits::{Signed as _, ToPrimitive as _, Zero as _};
 
+use super::super::elementary::Analytic;
 use super::super::force::{function_of, power};
 use super::super::fourier_series::{FourierSeries, WORKING};
+use super::cosine_series::CosineSeries;
 use super::{LawNotProved, restitution};
 use crate::exact::ball::Ball;
 use crate::exact::bound::Bound;
@@ -48,9 +50,13 @@ pub(super) trait LawValues: Clone {
 }
 
 /// A cosine series in theta, where the variable is `m + h cos(theta)`: a series of Chebyshev.
-impl LawValues for FourierSeries {
+impl<S: CosineSeries> LawValues for S {
     fn constant(value: Ball) -> Self {
-        Self::constant(value)
+        <Self as Analytic>::constant(value)
+    }
+
+    fn integer(value: i64) -> Self {
+        <Self as Analytic>::integer(value)
     }
 
     fn plus(&self, other: &Self) -> Self {
@@ -183,7 +189,7 @@ impl Variable<Jet> {
     }
 }
 
-impl Variable<FourierSeries> {
+impl<S: CosineSeries> Variable<S> {
     /// The variable on an interval as a series of Chebyshev.
     pub(super) fn along(from: &Rational, to: &Rational) -> Self {
         Self { own: line(from, to), from: from.clone(), to: to.clone(), restitution: None }
@@ -194,10 +200,10 @@ impl Variable<FourierSeries> {
 pub(super) const DIGITS: usize = 48;
 
 /// The numbers from one to another as a series of Chebyshev.
-pub(super) fn line(from: &Rational, to: &Rational) -> FourierSeries {
+fn line<S: CosineSeries>(from: &Rational, to: &Rational) -> S {
     let two = Integer::from(2);
     let ends = [(from + to) / &two, (to - from) / &two].map(|number| WORKING.fraction(&number));
-    FourierSeries::exactly(ends.to_vec(), vec![]).of_digits(DIGITS)
+    S::of_balls(ends.to_vec())
 }
 
 impl<V: LawValues> Variable<V> {

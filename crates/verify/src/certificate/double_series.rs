@@ -70,6 +70,12 @@ impl DoubleSeries {
         self.tail
     }
 
+    /// The value at the angle pi, without a proof.
+    pub(super) fn at_pi(&self) -> f64 {
+        let signed = |(k, own): (usize, &f64)| if k % 2 == 0 { *own } else { -own };
+        self.cosines.iter().enumerate().map(signed).sum()
+    }
+
     /// The norm of the part in the coefficients.
     pub(super) fn finite_norm(&self) -> Bound {
         sum_of_sizes(&self.cosines)

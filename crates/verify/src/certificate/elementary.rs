@@ -249,10 +249,14 @@ pub(super) trait Analytic: Clone + Sized {
     /// argument of norm at most 1/2; an even number.
     fn terms(&self) -> u32 {
         let negligible = Bound::power_of_two(-self.negligible() - 8);
-        (2..MOST_TERMS)
-            .step_by(2)
-            .find(|&terms| remainder(terms + 1) < negligible)
-            .unwrap_or(MOST_TERMS)
+        let mut left = Bound::exactly(2.0);
+        for k in 1..MOST_TERMS {
+            left = left / (2 * k);
+            if k % 2 == 1 && k >= 3 && left < negligible {
+                return k - 1;
+            }
+        }
+        MOST_TERMS
     }
 }
 

@@ -472,8 +472,8 @@ impl TrueFrequency {
 
     /// The piece of a bounded range that a place lies in.
     fn piece_at(&self, place: &Rational) -> Option<&TruthPiece> {
-        let distance = |piece: &TruthPiece| (place - &piece.middle).abs() / &piece.half;
-        self.near_pieces.iter().min_by_key(|piece| distance(piece))
+        let ends_after = |piece: &&TruthPiece| *place <= &piece.middle + &piece.half;
+        self.near_pieces.iter().find(ends_after).or(self.near_pieces.last())
     }
 
     /// The force in `r = 1/p`, times the power of r with which it has a value at zero.
@@ -554,7 +554,10 @@ impl TrueFrequency {
             {
                 force.at_rest::<S>()?
             }
-            (Some(force), _) => force.truth::<S>(&place, None)?,
+            (Some(force), _) => {
+                let near = self.piece_at(&certificate.worst).and_then(|piece| piece.turns);
+                force.truth::<S>(&place, near)?
+            }
             (None, _) => {
                 let piece = self.piece_at(&certificate.worst).ok_or_else(no_value)?;
                 let e = WORKING.fraction(&((&certificate.worst - &piece.middle) / &piece.half));

@@ -22,6 +22,9 @@ use crate::exact::bound::Bound;
 
 /// A cosine series with a tail.
 pub(super) trait CosineSeries: Analytic + Send + Sync {
+    /// Steps of Newton's iteration from a number in doubles to as many digits as are kept.
+    const STEPS_FROM_DOUBLES: usize;
+
     /// The series with these coefficients, of the digits that are kept.
     fn of_balls(cosines: Vec<Ball>) -> Self;
 
@@ -74,6 +77,8 @@ const fn is_turned(is_upper: bool, j: usize, k: usize) -> bool {
 }
 
 impl CosineSeries for FourierSeries {
+    const STEPS_FROM_DOUBLES: usize = 1;
+
     fn of_balls(cosines: Vec<Ball>) -> Self {
         Self::exactly(cosines, vec![]).of_digits(DIGITS)
     }
@@ -134,6 +139,8 @@ impl CosineSeries for FourierSeries {
 }
 
 impl CosineSeries for DoubleSeries {
+    const STEPS_FROM_DOUBLES: usize = 0;
+
     fn of_balls(cosines: Vec<Ball>) -> Self {
         Self::of_balls(&cosines)
     }

@@ -73,6 +73,8 @@ impl Scale {
 
 /// `1/omega`, or T/T_0 and the restitution, on a part of the range.
 pub(super) struct TruthPiece {
+    /// The turning points of a motion of the piece, where they are needed for those of others.
+    pub(super) turns: Option<Turns>,
     pub(super) scale: Scale,
     pub(super) middle: Rational,
     pub(super) half: Rational,
@@ -239,8 +241,8 @@ impl ForceOnRange {
             }
             let next = (position + width).min(steps);
             match self.piece::<S>([&place(position), &place(next)], turns) {
-                Ok((piece, own)) => {
-                    turns = own;
+                Ok(piece) => {
+                    turns = piece.turns;
                     pieces.push(piece);
                     (position, width) = (next, 2 * width);
                 }
@@ -260,7 +262,7 @@ impl ForceOnRange {
         &self,
         [from, to]: [&Rational; 2],
         near: Option<Turns>,
-    ) -> Result<(TruthPiece, Option<Turns>), LawNotProved> {
+    ) -> Result<TruthPiece, LawNotProved> {
         let two = Integer::from(2);
         let (middle, half) = ((from + to) / &two, (to - from) / &two);
         let radius = &half * Integer::from(WIDER);
@@ -291,7 +293,7 @@ impl ForceOnRange {
         let none = || LawNotProved::NoValue("1/omega".to_owned());
         let truth = quantities.next().ok_or_else(none)?;
         let restitution = quantities.next();
-        Ok((TruthPiece { scale: self.scale, middle, half, truth, restitution }, turns))
+        Ok(TruthPiece { turns, scale: self.scale, middle, half, truth, restitution })
     }
 
     /// x(0) with the variable in a ball, and its derivative by the variable.
@@ -363,7 +365,6 @@ impl ForceOnRange {
         start: &Ball,
         near: Option<Turns>,
     ) -> Result<Ball, LawNotProved> {
-        const STEPS: usize = 1;
         let none = || LawNotProved::NoValue("the turning point".to_owned());
         let own = || {
             let numbers = BTreeMap::from([(self.variable, WORKING.nearest(place))]);
@@ -375,11 +376,11 @@ impl ForceOnRange {
         let mut end = WORKING.fraction(&end.and_then(from_f64).ok_or_else(none)?);
         let nothing = Extent::of_odd(Ball::zero());
         let mut work = Ball::zero();
-        for step in 0..=STEPS {
+        for step in 0..=S::STEPS_FROM_DOUBLES {
             let extent = Extent::between(start, &end);
             let series = self.along::<S>(&self.force, place, [&extent, &nothing])?;
             work = WORKING.product(&work_between(&series), &WORKING.scaled(&extent.radius, 2));
-            if step < STEPS {
+            if step < S::STEPS_FROM_DOUBLES {
                 let force = self.at::<S>(&self.force, place, &end)?;
                 let more = WORKING.quotient(&work, &force).ok_or_else(none)?;
                 end = widened(&WORKING.sum(&end, &more), Bound::ZERO);
@@ -399,7 +400,8 @@ impl ForceOnRange {
     /// The same in doubles, by Newton's iteration from that of another motion; `None` if it does not converge.
     fn turning_point_near(&self, place: &Ball, start: &Ball, near: Turns) -> Option<f64> {
         const STEPS: usize = 12;
-        const ENOUGH: f64 = 1e-12;
+        /// A step after which the next one would be one of rounding.
+        const ENOUGH: f64 = 1e-8;
         let from = nearest(start);
         let mut end = near.end * (from / near.start);
         let nothing = Extent::of_odd(Ball::zero());
@@ -409,8 +411,7 @@ impl ForceOnRange {
             let series =
                 self.along::<DoubleSeries>(&self.force, place, [&extent, &nothing]).ok()?;
             let work = nearest(&work_between(&series)) * (from - end);
-            let force = nearest(&self.at::<DoubleSeries>(&self.force, place, &there).ok()?);
-            let more = work / force;
+            let more = work / series.at_pi();
             end += more;
             if end.signum() == from.signum() || !end.is_finite() {
                 return None;

@@ -385,7 +385,8 @@ impl ScaledEquations {
         if truth.remainder > Bound::power_of_two(ACCURATE) || !joins(&motions)? {
             return Err(NotEnclosed::Wide);
         }
-        let piece = TruthPiece { scale: Scale::OWN, middle, half, truth, restitution: None };
+        let piece =
+            TruthPiece { turns: None, scale: Scale::OWN, middle, half, truth, restitution: None };
         let contraction = motions.contraction();
         Ok((piece, EndOfPiece { approximate: last, found: motions.at_end(), contraction }))
     }

@@ -495,6 +495,25 @@ impl Solver {
         })
     }
 
+    /// Returns the solver of another system with the same equations and these events. Returns `None` if its equations
+    /// are others, or as [`with_numbers`](Self::with_numbers).
+    #[must_use]
+    pub fn for_system(
+        &self,
+        system: &System,
+        events: &[Event],
+        options: &SystemOptions,
+    ) -> Option<Self> {
+        let equations = |system: &System| (system.state.clone(), system.time, system.right.clone());
+        let is_same = self.options.tolerance.to_bits() == options.tolerance.to_bits()
+            && self.options.integrator == options.integrator
+            && self.events == events
+            && equations(&self.system) == equations(system)
+            && self.system.critical == system.critical;
+        let own = is_same.then(|| self.with_numbers(&system.numbers))??;
+        Some(Self { options: *options, ..own })
+    }
+
     /// Returns the solver with other critical times, see [`System::with_critical_times`].
     #[must_use]
     pub fn with_critical_times(self, times: &[f64]) -> Self {

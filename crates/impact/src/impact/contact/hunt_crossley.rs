@@ -463,14 +463,16 @@ impl PhasePlaneMotion {
     /// d/D at which the force is greatest, and the force there in units of gamma D^n.
     fn peak(&self, n: f64) -> (f64, f64) {
         let m = n + 1.0;
-        // The derivative of y^n (1 + z) vanishes where z = (m/2n) S^2 (1 - sigma^2).
-        let late = |sigma: f64| {
-            self.x * self.speed_ratio(sigma)
-                - 0.5 * m / n * self.whole * self.whole * (1.0 - sigma * sigma)
+        // The derivative of y^n (1 + z) vanishes where z = (m/2n) S(lambda v)^2 (1 - sigma^2), and S(z) = sigma
+        // S(lambda v): an equation for z, between zero and lambda v.
+        let (square, factor) = (self.whole * self.whole, 0.5 * m / n);
+        let late = |z: f64| z - factor * (square - z * z * (1.0 + excess(z)));
+        let z = if self.x == 0.0 { 0.0 } else { find_root(late, 0.0, self.x).unwrap_or(0.0) };
+        let y = match self.x == 0.0 {
+            true => 1.0,
+            false => (z / (factor * square)).min(1.0).powf(1.0 / m),
         };
-        let sigma = if self.x == 0.0 { 0.0 } else { find_root(late, 0.0, 1.0).unwrap_or(0.0) };
-        let y = ((1.0 - sigma) * (1.0 + sigma)).powf(1.0 / m);
-        (y, y.powf(n) * (1.0 + self.x * self.speed_ratio(sigma)))
+        (y, y.powf(n) * (1.0 + z))
     }
 }
 

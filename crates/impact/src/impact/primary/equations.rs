@@ -8,7 +8,7 @@
 //!
 //! The energies taken by damping and supplied by the force are integrated with the states.
 
-use std::cell::RefCell;
+use std::cell::{Ref, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::LazyLock;
@@ -19,7 +19,7 @@ use super::{PrimaryCase, PrimaryError};
 use crate::expr::{Expr, parse_expression};
 use crate::mechanics::{MechanicsError, Mechanism};
 use crate::symbol::Symbol;
-use crate::system::{Event, Path, Solver, System, SystemError, SystemOptions};
+use crate::system::{Event, Solver, System, SystemOptions};
 
 /// Number of energies integrated with the states: viscous, friction, contact, dashpot, force.
 pub(super) const ACCOUNTS: usize = 5;
@@ -42,6 +42,7 @@ pub(super) struct PrimaryEquations {
     case: PrimaryCase,
     /// The systems of the phases met so far, because a motion repeats the same phases.
     built: RefCell<Vec<(PhaseKey, Rc<PhaseSystem>)>>,
+    derived: DerivedSolvers,
 }
 
 /// A phase with equations of its own: in the barrier of a side or in none, and the direction in
@@ -55,24 +56,34 @@ pub(super) struct PhaseSystem {
     pub(super) accounts: Vec<usize>,
     /// Solvers for the events with which it has been followed.
     solvers: RefCell<Vec<Solver>>,
+    derived: DerivedSolvers,
 }
 
+/// The solvers of several cases whose recurrences were derived: those of cases that differ in numbers are computed
+/// side by side.
+pub(super) type DerivedSolvers = Rc<RefCell<Vec<Solver>>>;
+
 impl PhaseSystem {
-    /// Follows the phase until one of these events. All runs have the same options.
-    pub(super) fn solve(
-        &self,
-        times: [f64; 2],
-        values: &[f64],
-        events: &[Event],
-        options: &SystemOptions,
-    ) -> Result<Path, SystemError> {
+    /// The place of the solver that follows the phase until one of these events. All runs have the same options.
+    pub(super) fn place_of_solver(&self, events: &[Event], options: &SystemOptions) -> usize {
         let mut solvers = self.solvers.borrow_mut();
         let place = solvers.iter().position(|solver| solver.events() == events);
-        let place = place.unwrap_or_else(|| {
-            solvers.push(self.system.clone().solver(events, options));
+        place.unwrap_or_else(|| {
+            let mut derived = self.derived.borrow_mut();
+            let known =
+                derived.iter().find_map(|own| own.for_system(&self.system, events, options));
+            solvers.push(known.unwrap_or_else(|| {
+                let own = self.system.clone().solver(events, options);
+                derived.push(own.clone());
+                own
+            }));
             solvers.len() - 1
-        });
-        solvers[place].solve(times, values)
+        })
+    }
+
+    /// The solver at a place.
+    pub(super) fn solver(&self, place: usize) -> Ref<'_, Solver> {
+        Ref::map(self.solvers.borrow(), |solvers| &solvers[place])
     }
 }
 
@@ -106,7 +117,7 @@ fn derive() -> Result<Accelerations, MechanicsError> {
 }
 
 impl PrimaryEquations {
-    pub(super) fn new(case: PrimaryCase) -> Result<Self, PrimaryError> {
+    pub(super) fn new(case: PrimaryCase, derived: DerivedSolvers) -> Result<Self, PrimaryError> {
         let accelerations = DERIVED.as_ref().map_err(Clone::clone)?;
         let (primary, model) = (case.primary, case.model);
         let numbers = [
@@ -125,6 +136,7 @@ impl PrimaryEquations {
             numbers: numbers.map(|(name, value)| (Symbol::new(name), value)).into(),
             case,
             built: RefCell::default(),
+            derived,
         })
     }
 
@@ -194,7 +206,8 @@ impl PrimaryEquations {
         let rates = accounts.iter().map(|account| account_rates[*account].clone());
         let rates: Vec<Expr> = own_rates.iter().cloned().chain(rates).collect();
         let system = System::new(&names, Symbol::new(time), &rates, &self.numbers_and(more))?;
-        Ok(PhaseSystem { system, accounts, solvers: RefCell::default() })
+        let derived = self.derived.clone();
+        Ok(PhaseSystem { system, accounts, solvers: RefCell::default(), derived })
     }
 
     /// The numbers of the case, and these in addition.

@@ -14,10 +14,13 @@
 //! held:                  |torque| grows through alpha                  or through (1 + ROUNDING) alpha
 //! ```
 
+use std::cell::Ref;
+use std::rc::Rc;
+
 use super::super::model::Side;
 use super::super::simulation::REST_FRACTION;
 use super::chain::PrimaryChain;
-use super::equations::{ACCOUNTS, PhaseSystem, PrimaryEquations};
+use super::equations::{ACCOUNTS, DerivedSolvers, PhaseSystem, PrimaryEquations};
 use super::flight::ClosedFlight;
 use super::path::{PrimaryPath, PrimarySegment, PrimaryState};
 use super::{
@@ -26,7 +29,7 @@ use super::{
 };
 use crate::exact::from_f64;
 use crate::expr::{Expr, parse_expression};
-use crate::system::{Event, Path, PathEnd, SystemOptions};
+use crate::system::{Event, Path, PathEnd, SideBySide, Solver, SystemOptions};
 
 /// Follows both bodies from their start until the duration is over.
 ///
@@ -50,53 +53,193 @@ pub fn simulate_primary(
     case: PrimaryCase,
     settings: &PrimarySettings,
 ) -> Result<PrimaryMotion, PrimaryError> {
-    case.check()?;
-    if !(settings.duration > 0.0 && settings.duration.is_finite()) {
-        return Err(PrimaryError::Duration(settings.duration));
+    let mut motion = FollowedMotion::new(case, settings, DerivedSolvers::default())?;
+    loop {
+        match motion.next_phase()? {
+            NextPhase::Stopped(stop) => return Ok(motion.run.finish(stop)),
+            NextPhase::Integrated(phase) => {
+                let path = phase.solver().solve(phase.times, &phase.start)?;
+                motion.take(phase, path)?;
+            }
+        }
     }
-    let chain = settings.chain.then(|| PrimaryChain::new(&case)).transpose()?;
-    let mut run = PrimaryRun::new(case, settings)?;
-    let stop = loop {
+}
+
+/// The same of several motions: phases that are integrated are so side by side, and each motion is bit for bit the
+/// same as alone.
+pub(super) fn simulate_primaries(
+    motions: &[(PrimaryCase, PrimarySettings)],
+) -> Vec<Result<PrimaryMotion, PrimaryError>> {
+    let (mut side_by_side, derived) = (SideBySide::default(), DerivedSolvers::default());
+    let mut found: Vec<Option<Result<PrimaryMotion, PrimaryError>>> =
+        motions.iter().map(|_| None).collect();
+    let mut followed: Vec<(usize, FollowedMotion)> = vec![];
+    for (index, (case, settings)) in motions.iter().enumerate() {
+        match FollowedMotion::new(*case, settings, derived.clone()) {
+            Ok(motion) => followed.push((index, motion)),
+            Err(error) => found[index] = Some(Err(error)),
+        }
+    }
+    while !followed.is_empty() {
+        let mut phases = vec![];
+        let mut going = vec![];
+        for (index, mut motion) in followed {
+            match motion.next_phase() {
+                Ok(NextPhase::Integrated(phase)) => {
+                    phases.push(phase);
+                    going.push((index, motion));
+                }
+                Ok(NextPhase::Stopped(stop)) => found[index] = Some(Ok(motion.run.finish(stop))),
+                Err(error) => found[index] = Some(Err(error)),
+            }
+        }
+        let solvers: Vec<Ref<Solver>> = phases.iter().map(Phase::solver).collect();
+        let runs = phases.iter().zip(&solvers);
+        let runs = runs.map(|(phase, solver)| (&**solver, phase.times, &phase.start[..]));
+        let paths = side_by_side.solve(&runs.collect::<Vec<_>>());
+        drop(solvers);
+        followed = vec![];
+        for (((index, mut motion), phase), path) in going.into_iter().zip(phases).zip(paths) {
+            let path = path.map_err(PrimaryError::from);
+            match path.and_then(|path| motion.take(phase, path)) {
+                Ok(()) => followed.push((index, motion)),
+                Err(error) => found[index] = Some(Err(error)),
+            }
+        }
+    }
+    found.into_iter().flatten().collect()
+}
+
+/// A motion that is followed from phase to phase.
+struct FollowedMotion<'a> {
+    run: PrimaryRun<'a>,
+    /// The closed forms of its phases, where these are asked for.
+    chain: Option<PrimaryChain>,
+    /// The time at which the last phase began.
+    before: f64,
+    /// The reason why the last phase is the last one.
+    stop: Option<PrimaryStop>,
+}
+
+/// The next phase of a motion.
+enum NextPhase {
+    /// A phase without a closed form.
+    Integrated(Phase),
+    /// There is none.
+    Stopped(PrimaryStop),
+}
+
+/// A phase that is about to be integrated.
+struct Phase {
+    followed: Rc<PhaseSystem>,
+    /// The place of the solver with its events.
+    solver: usize,
+    times: [f64; 2],
+    start: Vec<f64>,
+    kind: PhaseKind,
+}
+
+/// The data of a phase that its end needs.
+enum PhaseKind {
+    /// A flight with an event for each of these barriers, the second and later ones, and then those of a turning
+    /// point or of the end of a slip.
+    Flight { direction: f64, sides: Vec<Side> },
+    /// A contact, at this depth at its beginning, with the number of the event at which the barrier would pull.
+    Contact { side: Side, direction: f64, place: f64, depth: f64, pulls: usize },
+    /// The way out of a barrier that lets go, from this position.
+    LetGo { side: Side, direction: f64, place: f64, before: f64 },
+    /// The main mass alone, with the pendulum held at x, in a barrier or not.
+    Held { x: f64, inside: Option<Side> },
+}
+
+impl Phase {
+    fn solver(&self) -> Ref<'_, Solver> {
+        self.followed.solver(self.solver)
+    }
+}
+
+impl<'a> FollowedMotion<'a> {
+    fn new(
+        case: PrimaryCase,
+        settings: &'a PrimarySettings,
+        derived: DerivedSolvers,
+    ) -> Result<Self, PrimaryError> {
+        case.check()?;
+        if !(settings.duration > 0.0 && settings.duration.is_finite()) {
+            return Err(PrimaryError::Duration(settings.duration));
+        }
+        let chain = settings.chain.then(|| PrimaryChain::new(&case)).transpose()?;
+        let run = PrimaryRun::new(case, settings, derived)?;
+        Ok(Self { run, chain, before: 0.0, stop: None })
+    }
+
+    /// Follows the phases with a closed form up to the next one without.
+    fn next_phase(&mut self) -> Result<NextPhase, PrimaryError> {
+        loop {
+            if let Some(stop) = self.stop.or_else(|| self.stop_before_phase()) {
+                return Ok(NextPhase::Stopped(stop));
+            }
+            let run = &mut self.run;
+            self.before = run.t;
+            let is_closed = match &self.chain {
+                Some(chain) => run.follow_in_closed_form(chain)?,
+                None => false,
+            };
+            match is_closed {
+                true => self.close(PathEnd::Reached),
+                false => return Ok(NextPhase::Integrated(run.begin_phase()?)),
+            }
+        }
+    }
+
+    /// Counts the next phase; returns the reason if there is none.
+    fn stop_before_phase(&mut self) -> Option<PrimaryStop> {
+        let settings = self.run.settings;
+        let run = &mut self.run;
         if run.t >= settings.duration {
-            break PrimaryStop::Duration;
+            return Some(PrimaryStop::Duration);
         }
         if settings.interrupt.is_requested() {
-            break PrimaryStop::Interrupted;
+            return Some(PrimaryStop::Interrupted);
         }
         if run.phases >= settings.phase_limit {
-            break PrimaryStop::PhaseLimit;
+            return Some(PrimaryStop::PhaseLimit);
         }
         run.phases += 1;
-        if settings.stop_at_rest && run.is_at_rest() {
-            break PrimaryStop::AtRest;
-        }
-        let before = run.t;
-        let is_closed = match &chain {
-            Some(chain) => run.follow_in_closed_form(chain)?,
-            None => false,
-        };
-        let reason = if is_closed { PathEnd::Reached } else { run.integrate_phase()? };
+        (settings.stop_at_rest && run.is_at_rest()).then_some(PrimaryStop::AtRest)
+    }
+
+    /// Continues at the end of a phase that has been integrated.
+    fn take(&mut self, phase: Phase, path: Path) -> Result<(), PrimaryError> {
+        let reason = self.run.end_phase(phase, path)?;
+        self.close(reason);
+        Ok(())
+    }
+
+    /// Completes a phase that has ended for this reason.
+    fn close(&mut self, reason: PathEnd) {
+        let run = &mut self.run;
         run.close_accounts();
-        match reason {
-            PathEnd::Interrupted => break PrimaryStop::Interrupted,
-            PathEnd::Reached | PathEnd::Event(_) => {}
+        self.stop = match reason {
+            PathEnd::Interrupted => Some(PrimaryStop::Interrupted),
+            PathEnd::Reached | PathEnd::Event(_) => None,
             PathEnd::StepLimit
             | PathEnd::Singular
             | PathEnd::Overflow
             | PathEnd::Sticks
             | PathEnd::PassesWall
             | PathEnd::EventsAccumulate
-            | PathEnd::NoReset => {
-                break PrimaryStop::Singular;
-            }
+            | PathEnd::NoReset => Some(PrimaryStop::Singular),
+        };
+        if self.stop.is_some() {
+            return;
         }
         // Consecutive phases of length zero mean that the motion is stuck.
-        run.idle = if run.t > before { 0 } else { run.idle + 1 };
+        run.idle = if run.t > self.before { 0 } else { run.idle + 1 };
         if run.idle > IDLE {
-            break PrimaryStop::Singular;
+            self.stop = Some(PrimaryStop::Singular);
         }
-    };
-    Ok(run.finish(stop))
+    }
 }
 
 /// Largest number of consecutive phases of length zero.
@@ -155,14 +298,18 @@ fn offset(name: &str, place: f64) -> Expr {
 }
 
 impl<'a> PrimaryRun<'a> {
-    fn new(case: PrimaryCase, settings: &'a PrimarySettings) -> Result<Self, PrimaryError> {
+    fn new(
+        case: PrimaryCase,
+        settings: &'a PrimarySettings,
+        derived: DerivedSolvers,
+    ) -> Result<Self, PrimaryError> {
         let [x, velocity, y, speed] = case.start;
         let state = PrimaryState { x, velocity, y, speed };
         let energy = case.energy(state);
         let mut run = Self {
             case,
             settings,
-            equations: PrimaryEquations::new(case)?,
+            equations: PrimaryEquations::new(case, derived)?,
             regime: PrimaryRegime::Free(0.0),
             t: 0.0,
             state,
@@ -261,15 +408,62 @@ impl<'a> PrimaryRun<'a> {
         }
     }
 
-    /// Integrates the next phase.
-    fn integrate_phase(&mut self) -> Result<PathEnd, PrimaryError> {
+    /// Prepares the integration of the next phase.
+    fn begin_phase(&mut self) -> Result<Phase, PrimaryError> {
         self.integrated += 1;
         match self.regime {
-            PrimaryRegime::Free(direction) => self.fly(direction),
-            PrimaryRegime::Contact(side, direction) => self.touch(side, direction),
-            PrimaryRegime::LetGo(side, direction) => self.let_go(side, direction),
-            PrimaryRegime::Held => self.follow_held(),
+            PrimaryRegime::Free(direction) => self.begin_flight(direction),
+            PrimaryRegime::Contact(side, direction) => self.begin_touch(side, direction),
+            PrimaryRegime::LetGo(side, direction) => self.begin_letting_go(side, direction),
+            PrimaryRegime::Held => self.begin_hold(),
         }
+    }
+
+    /// Continues with the state at the end of a phase; returns the reason of that end.
+    fn end_phase(&mut self, phase: Phase, path: Path) -> Result<PathEnd, PrimaryError> {
+        let Phase { followed, start, kind, .. } = phase;
+        match kind {
+            PhaseKind::Flight { direction, sides } => {
+                let swings = Some(1 + sides.len());
+                let reason = self.end_free(path, &start, &followed, swings);
+                if let PathEnd::Event(event) = reason {
+                    match sides.get(event.wrapping_sub(1)) {
+                        Some(side) => self.begin_contact(*side, direction),
+                        None => self.turn_back(0.0)?,
+                    }
+                }
+                Ok(reason)
+            }
+            PhaseKind::Contact { .. } => self.end_touch(path, &start, &followed, &kind),
+            PhaseKind::LetGo { side, direction, place, before } => {
+                let reason = self.end_free(path, &start, &followed, None);
+                // The elastic energy that the barrier stores on this way is not returned.
+                let stored = |x: f64| {
+                    let depth = (side.sign() * (x - place)).max(0.0);
+                    self.case.model.elastic_energy(depth)
+                };
+                self.accounts[2] += stored(before) - stored(self.state.x);
+                match reason {
+                    PathEnd::Event(1) => self.end_contact(side, direction),
+                    PathEnd::Event(2) => self.regime = PrimaryRegime::Contact(side, direction),
+                    _ => {}
+                }
+                Ok(reason)
+            }
+            PhaseKind::Held { x, inside } => self.end_hold(path, &start, &followed, (x, inside)),
+        }
+    }
+
+    /// A phase of these equations until one of these events.
+    fn phase(
+        &self,
+        followed: Rc<PhaseSystem>,
+        (times, start): ([f64; 2], Vec<f64>),
+        events: &[Event],
+        kind: PhaseKind,
+    ) -> Phase {
+        let solver = followed.place_of_solver(events, &self.options());
+        Phase { followed, solver, times, start, kind }
     }
 
     /// The end of a flight that is integrated: a swing later where closed forms may go on.
@@ -278,7 +472,7 @@ impl<'a> PrimaryRun<'a> {
         if self.settings.chain { end.min(self.t + std::f64::consts::TAU) } else { end }
     }
 
-    fn fly(&mut self, direction: f64) -> Result<PathEnd, PrimaryError> {
+    fn begin_flight(&mut self, direction: f64) -> Result<Phase, PrimaryError> {
         let mut events = vec![Event::record(parsed("y'"))];
         let mut sides = Vec::new();
         for side in [Side::Left, Side::Right] {
@@ -287,19 +481,11 @@ impl<'a> PrimaryRun<'a> {
                 events.push(Event::stop(offset("x", place)));
             }
         }
-        let turning = events.len();
         match self.case.sticks() {
             true => events.extend(self.end_of_slip(direction)),
             false => events.push(Event::record(parsed("x'"))),
         }
-        let reason = self.follow_free(direction, &events, Some(turning))?;
-        if let PathEnd::Event(event) = reason {
-            match sides.get(event.wrapping_sub(1)) {
-                Some(side) => self.begin_contact(*side, direction),
-                None => self.turn_back(0.0)?,
-            }
-        }
-        Ok(reason)
+        self.begin_free(direction, &events, PhaseKind::Flight { direction, sides })
     }
 
     /// The events that end a slip in this direction: the pendulum comes to rest, or never leaves
@@ -310,30 +496,39 @@ impl<'a> PrimaryRun<'a> {
         [&forward + &Expr::zero(), forward + unseen].map(|speed| Event::stop(speed).falling())
     }
 
-    /// Follows the motion without contact forces until one of these events. The first are the
-    /// turning points of the main mass; the event of this number, if given, those of the pendulum.
-    fn follow_free(
-        &mut self,
+    /// The motion without contact forces until one of these events. The first are the turning points of the main
+    /// mass.
+    fn begin_free(
+        &self,
         direction: f64,
         events: &[Event],
-        swings: Option<usize>,
-    ) -> Result<PathEnd, PrimaryError> {
+        kind: PhaseKind,
+    ) -> Result<Phase, PrimaryError> {
         let followed = self.equations.flight(direction)?;
         let PrimaryState { x, velocity, y, speed } = self.state;
         let start = self.with_accounts(&[x, velocity, y, speed], &followed);
-        let path =
-            followed.solve([self.t, self.end_of_flight()], &start, events, &self.options())?;
+        Ok(self.phase(followed, ([self.t, self.end_of_flight()], start), events, kind))
+    }
+
+    /// Continues after such a motion; the event of this number, if given, are the turning points of the pendulum.
+    fn end_free(
+        &mut self,
+        path: Path,
+        start: &[f64],
+        followed: &PhaseSystem,
+        swings: Option<usize>,
+    ) -> PathEnd {
         self.turns_of(&path, |state| state[2], |time| time);
         for met in path.occurrences().iter().filter(|met| Some(met.event) == swings) {
             self.swings.extend(path.states_at(met.time).map(|state| (met.time, state[0])));
         }
         let (reason, end) = (path.reason(), path.end());
-        let last = path.states_at(end).unwrap_or(start);
+        let last = path.states_at(end).unwrap_or_else(|| start.to_vec());
         self.state = PrimaryState { x: last[0], velocity: last[1], y: last[2], speed: last[3] };
-        self.keep_accounts(&last[4..], &followed);
+        self.keep_accounts(&last[4..], followed);
         self.path.push(self.t, end, PrimarySegment::Flight(path));
         self.t = end;
-        Ok(reason)
+        reason
     }
 
     /// Decides at a moment of rest whether the pendulum turns back or is held.
@@ -379,7 +574,7 @@ impl<'a> PrimaryRun<'a> {
         self.regime = PrimaryRegime::Free(direction);
     }
 
-    fn touch(&mut self, side: Side, direction: f64) -> Result<PathEnd, PrimaryError> {
+    fn begin_touch(&mut self, side: Side, direction: f64) -> Result<Phase, PrimaryError> {
         let place = self.barrier_position(side);
         let followed = self.equations.contact(side, place, direction)?;
         let depth = (side.sign() * (self.state.x - place)).max(0.0);
@@ -401,7 +596,20 @@ impl<'a> PrimaryRun<'a> {
         }
         let PrimaryState { velocity, y, speed, .. } = self.state;
         let start = self.with_accounts(&[w, velocity, y, speed, self.t], &followed);
-        let path = followed.solve([0.0, LONGEST_CONTACT], &start, &events, &self.options())?;
+        let kind = PhaseKind::Contact { side, direction, place, depth, pulls };
+        Ok(self.phase(followed, ([0.0, LONGEST_CONTACT], start), &events, kind))
+    }
+
+    fn end_touch(
+        &mut self,
+        path: Path,
+        start: &[f64],
+        followed: &PhaseSystem,
+        kind: &PhaseKind,
+    ) -> Result<PathEnd, PrimaryError> {
+        let &PhaseKind::Contact { side, direction, place, depth, pulls } = kind else {
+            return Ok(path.reason());
+        };
         self.turns_of(&path, |state| state[2], |_| f64::NAN);
         let turns = path.occurrences().iter().filter(|met| met.event == 3);
         let turns: Vec<Vec<f64>> = turns.filter_map(|met| path.states_at(met.time)).collect();
@@ -409,7 +617,7 @@ impl<'a> PrimaryRun<'a> {
         let swing = |state: &Vec<f64>| (state[4], place + side.sign() * state[0] * state[0]);
         self.swings.extend(turns.iter().map(swing));
         let reason = path.reason();
-        let last = path.states_at(path.end()).unwrap_or(start);
+        let last = path.states_at(path.end()).unwrap_or_else(|| start.to_vec());
         let w = last[0].max(0.0);
         self.state = PrimaryState {
             x: place + side.sign() * w * w,
@@ -417,7 +625,7 @@ impl<'a> PrimaryRun<'a> {
             y: last[2],
             speed: last[3],
         };
-        self.keep_accounts(&last[5..], &followed);
+        self.keep_accounts(&last[5..], followed);
         let end = last[4].min(self.settings.duration);
         if let Some(impact) = self.impacts.last_mut() {
             impact.penetration = impact.penetration.max(deepest).max(w * w);
@@ -444,7 +652,7 @@ impl<'a> PrimaryRun<'a> {
 
     /// Follows the pendulum out of a barrier that returns more slowly than it: without force, until
     /// it has left the barrier or is pushed again.
-    fn let_go(&mut self, side: Side, direction: f64) -> Result<PathEnd, PrimaryError> {
+    fn begin_letting_go(&mut self, side: Side, direction: f64) -> Result<Phase, PrimaryError> {
         let place = self.barrier_position(side);
         let sign = Expr::from(side.sign() as i64);
         let events = [
@@ -452,23 +660,11 @@ impl<'a> PrimaryRun<'a> {
             Event::stop(offset("x", place)),
             Event::stop(parsed("gamma") + sign * parsed("mu*x'")).rising(),
         ];
-        let before = self.state.x;
-        let reason = self.follow_free(direction, &events, None)?;
-        // The elastic energy that the barrier stores on this way is not returned.
-        let stored = |x: f64| {
-            let depth = (side.sign() * (x - place)).max(0.0);
-            self.case.model.elastic_energy(depth)
-        };
-        self.accounts[2] += stored(before) - stored(self.state.x);
-        match reason {
-            PathEnd::Event(1) => self.end_contact(side, direction),
-            PathEnd::Event(2) => self.regime = PrimaryRegime::Contact(side, direction),
-            _ => {}
-        }
-        Ok(reason)
+        let kind = PhaseKind::LetGo { side, direction, place, before: self.state.x };
+        self.begin_free(direction, &events, kind)
     }
 
-    fn follow_held(&mut self) -> Result<PathEnd, PrimaryError> {
+    fn begin_hold(&mut self) -> Result<Phase, PrimaryError> {
         let PrimaryState { x, y, speed, .. } = self.state;
         let inside = self.case.model.depth(x);
         let contact =
@@ -481,19 +677,28 @@ impl<'a> PrimaryRun<'a> {
             events.push(Event::stop(&torque + &bound).falling());
         }
         let start = self.with_accounts(&[y, speed], &followed);
-        let path =
-            followed.solve([self.t, self.settings.duration], &start, &events, &self.options())?;
+        let kind = PhaseKind::Held { x, inside: inside.map(|(side, _)| side) };
+        Ok(self.phase(followed.into(), ([self.t, self.settings.duration], start), &events, kind))
+    }
+
+    fn end_hold(
+        &mut self,
+        path: Path,
+        start: &[f64],
+        followed: &PhaseSystem,
+        (x, inside): (f64, Option<Side>),
+    ) -> Result<PathEnd, PrimaryError> {
         self.turns_of(&path, |state| state[0], |time| time);
         let (reason, end) = (path.reason(), path.end());
-        let last = path.states_at(end).unwrap_or(start);
+        let last = path.states_at(end).unwrap_or_else(|| start.to_vec());
         self.state = PrimaryState { x, velocity: 0.0, y: last[0], speed: last[1] };
-        self.keep_accounts(&last[2..], &followed);
+        self.keep_accounts(&last[2..], followed);
         self.path.push(self.t, end, PrimarySegment::Held { path, x });
         self.t = end;
         if let PathEnd::Event(event) = reason {
             let direction = if event % 2 == 1 { 1.0 } else { -1.0 };
             match inside {
-                Some((side, _)) => self.regime = PrimaryRegime::Contact(side, direction),
+                Some(side) => self.regime = PrimaryRegime::Contact(side, direction),
                 None => self.set_off(direction)?,
             }
         }

@@ -1,12 +1,14 @@
 //! Many main masses with their pendulums: the amplitude of each in the long run, or its rest time,
 //! with its damper, with the damper locked and without.
 
+use super::follow::simulate_primaries;
 use super::{
-    Primary, PrimaryCase, PrimaryError, PrimarySettings, PrimaryStop, UndampedAndLocked,
-    simulate_primary,
+    Primary, PrimaryCase, PrimaryError, PrimaryMotion, PrimarySettings, PrimaryStop,
+    UndampedAndLocked,
 };
 use crate::impact::NoRest;
-use crate::parallel::par_map;
+use crate::parallel::{par_map, threads};
+use crate::system::LANES;
 
 /// The part of a run, its last, that counts as the long run.
 const LAST: f64 = 0.25;
@@ -71,19 +73,23 @@ pub fn sweep_primary(
     motions: &[(PrimaryCase, PrimarySettings)],
     progress: impl Fn(usize) + Sync,
 ) -> Result<Vec<PrimaryRow>, (usize, PrimaryError)> {
-    let numbered: Vec<_> = motions.iter().enumerate().collect();
-    let one = |(number, (case, settings)): &(usize, &(PrimaryCase, PrimarySettings))| {
-        let row = row(*case, settings).map_err(|error| (*number, error));
-        progress(1);
-        row
-    };
-    par_map(&numbered, one).into_iter().collect()
+    /// Motions that are followed together: those that impact leave the others behind.
+    const TOGETHER: usize = 4 * LANES;
+    let together = motions.len().div_ceil(threads()).clamp(1, TOGETHER);
+    let blocks: Vec<_> = motions.chunks(together).collect();
+    let rows = par_map(&blocks, |block| {
+        let found = simulate_primaries(block);
+        progress(block.len());
+        found.into_iter().map(|motion| motion.map(|motion| row(&motion))).collect::<Vec<_>>()
+    });
+    let numbered = rows.into_iter().flatten().enumerate();
+    numbered.map(|(number, row)| row.map_err(|error| (number, error))).collect()
 }
 
-fn row(case: PrimaryCase, settings: &PrimarySettings) -> Result<PrimaryRow, PrimaryError> {
-    let motion = simulate_primary(case, settings)?;
+fn row(motion: &PrimaryMotion) -> PrimaryRow {
+    let case = &motion.case;
     let since = (1.0 - LAST) * motion.end;
-    Ok(PrimaryRow {
+    PrimaryRow {
         primary: case.primary,
         end: motion.end,
         amplitude: motion.largest_since(since),
@@ -92,5 +98,5 @@ fn row(case: PrimaryCase, settings: &PrimarySettings) -> Result<PrimaryRow, Prim
         rest_time: motion.rest_time(),
         others: case.primary.undamped_and_locked(),
         stop: motion.stop,
-    })
+    }
 }

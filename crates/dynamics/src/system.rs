@@ -504,11 +504,12 @@ impl Solver {
         events: &[Event],
         options: &SystemOptions,
     ) -> Option<Self> {
-        let equations = |system: &System| (system.state.clone(), system.time, system.right.clone());
         let is_same = self.options.tolerance.to_bits() == options.tolerance.to_bits()
             && self.options.integrator == options.integrator
             && self.events == events
-            && equations(&self.system) == equations(system)
+            && self.system.state == system.state
+            && self.system.time == system.time
+            && self.system.right == system.right
             && self.system.critical == system.critical;
         let own = is_same.then(|| self.with_numbers(&system.numbers))??;
         Some(Self { options: *options, ..own })

@@ -38,7 +38,7 @@ use std::sync::OnceLock;
 
 use num_traits::{One as _, Signed as _, Zero as _};
 
-use super::double_series::DoubleSeries;
+use super::double_series::{DoubleSeries, nearest};
 use super::elementary::Analytic;
 use super::force::NoValue;
 use super::fourier_series::{FourierSeries, WORKING};
@@ -465,7 +465,7 @@ impl TrueFrequency {
         let exact = from_f64(place)?;
         let piece = self.piece_at(&exact)?;
         let e = WORKING.fraction(&((&exact - &piece.middle) / &piece.half));
-        let value = |own: &PiecePolynomial| WORKING.nearest(&own.at(&e, &piece.half).value);
+        let value = |own: &PiecePolynomial| nearest(&own.value(&e));
         let restitution = piece.restitution.as_ref().map_or(f64::NAN, value);
         Some([value(&piece.truth), restitution])
     }

@@ -351,6 +351,7 @@ fn sum_of_products(left: &[f64], right: &[f64]) -> f64 {
 const SMALL: f64 = 1e-4;
 
 /// Replaces the lower half of a symmetric matrix by Cholesky's factor; false if it is not positive.
+#[inline(always)]
 fn factor(matrix: &mut [[f64; MOST_CONSTANTS + 1]; MOST_CONSTANTS], size: usize) -> bool {
     /// A pivot that has lost more digits than this is none.
     const LOST: f64 = 1e-15;
@@ -370,6 +371,7 @@ fn factor(matrix: &mut [[f64; MOST_CONSTANTS + 1]; MOST_CONSTANTS], size: usize)
 }
 
 /// The solution of a system with this factor in the lower half.
+#[inline(always)]
 fn substituted(
     matrix: &[[f64; MOST_CONSTANTS + 1]; MOST_CONSTANTS],
     size: usize,

@@ -23,7 +23,6 @@
 //! Newton's step.
 
 use nalgebra::Complex;
-use pulp::{Arch, NullaryFnOnce};
 
 use super::modes::DampedModes;
 use super::path::PrimaryState;
@@ -47,31 +46,23 @@ const RESONANT: f64 = 1e-4;
 #[derive(Clone, Copy, Debug)]
 struct Wave {
     factors: [u8; 3],
-    /// Real and imaginary parts of the coefficients of x, x', x'', y, y', filled up with zeros to what a register
-    /// holds.
-    real: [f64; RATES],
-    imaginary: [f64; RATES],
+    /// Coefficients of x, x', x''.
+    x: [Complex<f64>; 3],
+    /// Coefficients of y, y'.
+    y: [Complex<f64>; 2],
     exponent: Complex<f64>,
 }
-
-/// The number of coefficients of a term.
-const RATES: usize = 8;
 
 impl Wave {
     fn new(factors: [usize; 3], exponent: Complex<f64>, [x, y]: [Complex<f64>; 2]) -> Self {
         let rate = x * exponent;
-        let all = [x, rate, rate * exponent, y, y * exponent, ZERO, ZERO, ZERO];
+        let second = rate * exponent;
         Self {
             factors: factors.map(|factor| factor as u8),
-            real: all.map(|own| own.re),
-            imaginary: all.map(|own| own.im),
+            x: [x, rate, second],
+            y: [y, y * exponent],
             exponent,
         }
-    }
-
-    /// The coefficient of x''.
-    fn second(&self) -> Complex<f64> {
-        Complex::new(self.real[2], self.imaginary[2])
     }
 }
 
@@ -433,8 +424,8 @@ impl ClosedFlight {
     fn bound(&self, order: u8, time: f64) -> f64 {
         let is_third = order > 2;
         let waves = self.waves.iter().map(|wave| match is_third {
-            true => size(wave.second() * wave.exponent),
-            false => size(wave.second()),
+            true => size(wave.x[2] * wave.exponent),
+            false => size(wave.x[2]),
         });
         let mut growth: f64 = 0.0;
         let modes = self.modes.iter().map(|mode| {
@@ -478,12 +469,21 @@ impl ClosedFlight {
             exponentials[FORCE] = wave;
             exponentials[CONJUGATE[FORCE]] = wave.conj();
         }
-        let [x, velocity, acceleration, y, speed, ..] = Arch::new().dispatch(SumOfWaves {
-            waves: &self.waves,
-            exponentials: &exponentials,
-            sums: [x[0], x[1], x[2], y[0], y[1], 0.0, 0.0, 0.0],
-        });
-        FlightPoint { state: PrimaryState { x, velocity, y, speed }, acceleration }
+        for wave in &self.waves {
+            let [a, b, c] = wave.factors.map(|factor| exponentials[usize::from(factor)]);
+            let product = a * b * c;
+            let real = |own: &Complex<f64>| own.re * product.re - own.im * product.im;
+            for (sum, own) in x.iter_mut().zip(&wave.x) {
+                *sum += real(own);
+            }
+            for (sum, own) in y.iter_mut().zip(&wave.y) {
+                *sum += real(own);
+            }
+        }
+        FlightPoint {
+            state: PrimaryState { x: x[0], velocity: x[1], y: y[0], speed: y[1] },
+            acceleration: x[2],
+        }
     }
 
     /// The first event of the flight, at most this long after its beginning: a touch of one of these
@@ -531,30 +531,6 @@ impl ClosedFlight {
         }
         let point = self.point(t);
         (t, FlightEnd::Reached, point)
-    }
-}
-
-/// The sum of the terms of a flight and of what there is before, all rates of one side by side.
-struct SumOfWaves<'a> {
-    waves: &'a [Wave],
-    exponentials: &'a [Complex<f64>; EXPONENTS],
-    sums: [f64; RATES],
-}
-
-impl NullaryFnOnce for SumOfWaves<'_> {
-    type Output = [f64; RATES];
-
-    #[inline(always)]
-    fn call(self) -> [f64; RATES] {
-        let Self { waves, exponentials, mut sums } = self;
-        for wave in waves {
-            let [a, b, c] = wave.factors.map(|factor| exponentials[usize::from(factor)]);
-            let product = a * b * c;
-            for (k, sum) in sums.iter_mut().enumerate() {
-                *sum += wave.real[k] * product.re - wave.imaginary[k] * product.im;
-            }
-        }
-        sums
     }
 }
 

@@ -100,6 +100,13 @@ impl PiecePolynomial {
         Self { coefficients, chebyshev, remainder }
     }
 
+    /// The value of the polynomial.
+    pub(super) fn value(&self, e: &Ball) -> Ball {
+        self.coefficients.iter().rev().fold(Ball::zero(), |value, coefficient| {
+            WORKING.sum(&WORKING.product(&value, e), coefficient)
+        })
+    }
+
     /// All numbers of the ball that a value may be.
     pub(super) fn within(&self, e: &Ball, half: &Rational) -> Jet {
         let own = self.at(e, half);

@@ -74,13 +74,8 @@ impl NullaryFnOnce for LargestAtPoints<'_> {
             }
         }
         let [even, odd] = &sums;
-        let mut largest = 0.0;
-        for (even, odd) in even.iter().zip(odd) {
-            let size = even.abs() + odd.abs();
-            // Not a number stays one.
-            largest = if size <= largest { largest } else { size };
-        }
-        largest
+        // A coefficient that is no number makes the norm, which is added, unknown.
+        even.iter().zip(odd).fold(0.0, |largest, (even, odd)| largest.max(even.abs() + odd.abs()))
     }
 }
 

@@ -200,3 +200,29 @@ impl CosineSeries for DoubleSeries {
         self
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::ratio;
+
+    /// With y = (x + 1)/2 or (x - 1)/2: `T_2(y) = T_2(x)/4 +- T_1(x) - 1/4`, and `3 + y` beside it.
+    fn halves_are_those_of_polynomials<S: CosineSeries>() {
+        let balls = |numbers: &[(i64, i64)]| -> Vec<Ball> {
+            numbers.iter().map(|(n, d)| WORKING.fraction(&ratio(*n, *d))).collect()
+        };
+        let series = S::of_balls(balls(&[(3, 1), (1, 1), (1, 1)]));
+        for (is_upper, expected) in
+            [(true, [(13, 4), (3, 2), (1, 4)]), (false, [(9, 4), (-1, 2), (1, 4)])]
+        {
+            let apart = series.on_half(is_upper).difference(&S::of_balls(balls(&expected)));
+            assert!(apart.norm() < Bound::exactly(1e-14), "{is_upper} {}", apart.norm().value());
+        }
+    }
+
+    #[test]
+    fn halves_of_both_series_are_those_of_polynomials() {
+        halves_are_those_of_polynomials::<DoubleSeries>();
+        halves_are_those_of_polynomials::<FourierSeries>();
+    }
+}

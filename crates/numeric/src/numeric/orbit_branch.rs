@@ -208,14 +208,18 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         const CONVERGED: f64 = 1e-10;
         const NEXT_IS_ROUNDING: f64 = 1e-8;
         /// Length below which steps that no longer shrink are rounding, which is magnified near
-        /// folds.
+        /// folds, and the miss of the map, over its steepest slope, up to which they are: beside a
+        /// corner steps go from one side to the other and back, as small and never an orbit.
         const ROUNDING: f64 = 1e-6;
+        const MISSED_BY_ROUNDING: f64 = 1e-9;
         let mut unknowns = guess.clone();
         let mut before = f64::INFINITY;
         for periods in 1..=MOST {
             let image = self.image(&unknowns)?;
             let (matrix, mut missed) = Self::bordered(&image, &unknowns, direction, sizes);
             let away = (&unknowns - guess).component_div(sizes);
+            let by_rounding = MISSED_BY_ROUNDING * (1.0 + matrix.amax());
+            let is_rounding = missed.amax() <= by_rounding;
             missed[unknowns.len() - 1] = direction.dot(&away);
             let factors = matrix.lu();
             let step = factors.solve(&missed)?;
@@ -227,7 +231,8 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
                 unknowns -= step.component_mul(sizes);
                 return self.point(unknowns, &image, &factors, sizes).map(|point| (point, periods));
             }
-            if moved > CONVERGED && (moved > ROUNDING || moved < 0.5 * before) {
+            let has_stalled = is_rounding && moved <= ROUNDING && moved >= 0.5 * before;
+            if moved > CONVERGED && !has_stalled {
                 unknowns -= step.component_mul(sizes);
                 before = moved;
                 continue;
@@ -337,6 +342,9 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         /// Cosine of the angle between tangents beyond which a step was too long.
         const SHARPEST: f64 = 0.94;
         const FARTHEST: f64 = 1.5;
+        /// Ratio to the length of the distance from the guess up to which an orbit beyond a change of the
+        /// orientation is one of this branch: beside a corner another branch is near, where it is the other one.
+        const ASIDE: f64 = 0.1;
         let here = points.last()?;
         let sizes = (self.sizes)(here);
         let along = |point: &OrbitPoint<Kept>| point.tangent.component_div(&sizes).normalize();
@@ -345,7 +353,10 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         let guess = &here.unknowns + ahead.component_mul(&sizes);
         self.corrected(&guess, &tangent, &sizes).filter(|(point, _)| {
             let moved = (&point.unknowns - &here.unknowns).component_div(&sizes).norm();
-            along(point).dot(&tangent) > SHARPEST && moved < FARTHEST * length
+            let aside = (&point.unknowns - &guess).component_div(&sizes).norm();
+            let is_same =
+                self.smooth || point.orientation == here.orientation || aside <= ASIDE * length;
+            is_same && along(point).dot(&tangent) > SHARPEST && moved < FARTHEST * length
         })
     }
 

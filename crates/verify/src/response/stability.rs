@@ -18,7 +18,7 @@ use super::driven::{Driven, TimedStart};
 use super::jump::{StopCondition, VariationalMotion, evaluations_of, follow, positions_on};
 use crate::interrupt::Interrupt;
 use crate::numeric::ode::{
-    Action, Event, IntegrationOptions, Point, Trajectory, integrate_first_order,
+    Action, Event, IntegrationOptions, Point, StopReason, Trajectory, integrate_first_order,
 };
 use crate::numeric::periodic::{PeriodicOrbit, SearchStep, Shooting, eigenvalues_of_two};
 use crate::system::{LANES, Path};
@@ -349,28 +349,41 @@ fn legs_of_a_period(
 ) -> Option<Vec<Trajectory<Point<[f64; 2]>>>> {
     /// Largest number of legs.
     const MOST: usize = 400;
+    /// Part of the period behind a corner within which the same corner is not met once more: there its
+    /// expression is rounding.
+    const BEHIND: f64 = 1e-9;
     let rates = |t: f64, y: &[f64; 2], rates: &mut [f64; 2]| {
         *rates = [y[1], -driven.force_in_time(&[y[0], y[1], t, parameter])];
     };
     let turns = || Event::new(|point: &Point<[f64; 2]>| point.y[1], Action::Record);
-    let corner = |index: usize| {
-        let guard = move |point: &Point<[f64; 2]>| {
-            driven.corner(index, &[point.y[0], point.y[1], point.t, parameter])
+    let period = std::f64::consts::TAU / orbit.frequency;
+    let corner = |(index, met): (usize, &f64)| {
+        let seen_from = met + BEHIND * period;
+        let guard = move |point: &Point<[f64; 2]>| match point.t < seen_from {
+            true => 0.0,
+            false => driven.corner(index, &[point.y[0], point.y[1], point.t, parameter]),
         };
         Event::new(guard, Action::Stop)
     };
-    let period = std::f64::consts::TAU / orbit.frequency;
+    // The time at which each corner was met last.
+    let mut met = vec![f64::NEG_INFINITY; driven.corners()];
     let options = options(orbit.peak, tolerance);
     let mut begin = Point { t: 0.0, y: orbit.start };
     let mut legs = Vec::new();
     for _ in 0..MOST {
         let events: Vec<_> =
-            [turns()].into_iter().chain((0..driven.corners()).map(corner)).collect();
+            [turns()].into_iter().chain(met.iter().enumerate().map(corner)).collect();
         let leg = integrate_first_order(rates, begin, period, &events, &options).ok()?;
         if !leg.is_complete() {
             return None;
         }
         begin = leg.end();
+        // The first event is the turn.
+        if let StopReason::Event { event, .. } = leg.stop_reason()
+            && let Some(met) = event.checked_sub(1).and_then(|index| met.get_mut(index))
+        {
+            *met = begin.t;
+        }
         legs.push(leg);
         if begin.t >= period {
             return Some(legs);

@@ -403,7 +403,7 @@ fn refused(error: ResponseError) -> Failure {
             "add a force that depends on time, such as - F*cos(Omega*t), or what excites the motion, such as - mu*(1 - x^2)*x'".to_owned(),
         ),
         ResponseError::NoCycle { parameter, .. } => Some(format!(
-            "it dies out, escapes, its cycles lie elsewhere, or no coordinate turns between their events: try another range of {parameter}, or follow it: `lindstedt simulate`"
+            "it dies out, escapes, or its cycles lie elsewhere: try another range of {parameter}, or follow it: `lindstedt simulate`"
         )),
         ResponseError::NoPeriods(_) => Some("leave out --periods: the period of a self-excited motion is found".to_owned()),
         ResponseError::NotPeriodic(_) => {

@@ -114,3 +114,58 @@ fn motions_against_a_dashpot_are_those_of_their_closed_form() {
         assert!(beyond.iter().all(|point| point.parameter > 1.05), "{pulls}: {beyond:?}");
     }
 }
+
+/// Beside the grazing the branch without contact turns into that with a short one: a fold, no crossing, and both
+/// branches by the closed forms.
+#[test]
+fn a_narrow_range_has_the_branch_with_a_short_contact() {
+    use lindstedt::response::bifurcation::BifurcationKind;
+    let equation = "x'' + x'/10 + x + (10000*(x - 1) + 20*x')*H(x - 1) = cos(w*t)/2";
+    let request = ResponseRequest::new(equation, "w", [1.2, 1.25], "").expect("a request");
+    let found = respond(&request).expect("a response");
+    assert_eq!(found.branches.len(), 2);
+    let [fold] = &found.bifurcations[..] else { panic!("{:?}", found.bifurcations) };
+    // The free motion touches the wall where (1 - w^2)^2 + w^2/100 = 1/4.
+    let square = 0.5 * (1.99 + (1.99_f64.powi(2) - 3.0).sqrt());
+    assert!(fold.kind == BifurcationKind::Fold, "{fold:?}");
+    assert!((fold.parameter - square.sqrt()).abs() < 1e-7, "{fold:?}");
+    let branch = &found.branches[fold.branch];
+    let ends = [branch.points.first(), branch.points.last()].map(|point| point.expect("a point"));
+    let [low, high] = [ends[0].peak.min(ends[1].peak), ends[0].peak.max(ends[1].peak)];
+    assert!(ends.iter().all(|point| point.parameter == 1.25) && low < 0.9 && high > 1.01);
+    let seen = branch.points.iter().filter(|point| point.peak > 1.0 + 1e-4);
+    for point in seen.clone() {
+        let (end, touches) = period_later(point, true);
+        let (one, other) = (end[0] - point.start[0], end[1] - point.start[1]);
+        let growth = point.multipliers.map_or(1.0, |all| all[0].norm());
+        assert!(touches && one.hypot(other) < 1e-8 * growth, "{point:?}: {end:?}");
+        assert_eq!(point.stable, Some(false));
+    }
+    assert!(seen.count() > 10);
+}
+
+/// The law of multibody programs, which damps with a step of the depth: every point of its branches is judged, and
+/// those of a step that is over at once are those of a dashpot that does not pull.
+#[test]
+fn a_dashpot_that_comes_in_by_a_step_is_judged_throughout() {
+    let of = |step: &str, range| {
+        let force = format!("max(10000*max(x - 1, 0) + 20*x'*{step}, 0)");
+        let equation = format!("x'' + x'/10 + x + {force}*H(x - 1) = cos(w*t)/2");
+        let request = ResponseRequest::new(&equation, "w", range, "").expect("a request");
+        respond(&request).expect("a response")
+    };
+    let part = "min(max(x - 1, 0)*10000, 1)";
+    let found = of(&format!("{part}^2*(3 - 2*{part})"), [1.1, 1.2]);
+    assert_eq!((found.unjudged, found.branches.len()), (0, 1));
+    assert!(found.error.is_some_and(|error| error < 1e-6), "{:?}", found.error);
+    let at_once = of("1", [1.1, 1.2]);
+    let ends = |found: &lindstedt::response::ResponseDiagram| {
+        let points = &found.branches[0].points;
+        let mut ends = [&points[0], &points[points.len() - 1]].map(|point| point.peak);
+        ends.sort_by(f64::total_cmp);
+        ends
+    };
+    for (one, other) in ends(&found).into_iter().zip(ends(&at_once)) {
+        assert!((one - other).abs() < 2e-4, "{one} {other}");
+    }
+}

@@ -121,3 +121,72 @@ fn a_mode_comes_back_after_two_events() {
         assert!(point.error.is_some_and(|error| error < 1e-8), "{point:?}");
     }
 }
+
+/// A relay with hysteresis, `x' = a - x - 2 u`: x goes between -1/10 and 1/10 in ln((2.1 - a)/(1.9 - a)) and back in
+/// ln((2.1 + a)/(1.9 + a)), and after one event nothing is left of a disturbance but the phase.
+#[test]
+fn a_relay_swings_in_its_closed_form() {
+    let relay = ["x > 1/10: u = 1", "x < -1/10: u = -1"];
+    let asked = asked("x' = w - x - 2*u; u' = 0", &relay, 1);
+    let found = respond(&ResponseRequest { range: [-0.5, 0.5], ..asked }).expect("a response");
+    assert_eq!((found.branches.len(), found.modes.len()), (1, 1));
+    let all = points(&found);
+    assert!(all.iter().any(|point| point.parameter == -0.5) && all.len() > 10);
+    for point in all {
+        let a = point.parameter;
+        let period = ((2.1 - a) * (2.1 + a) / ((1.9 - a) * (1.9 + a))).ln();
+        assert!((point.frequency * period / std::f64::consts::TAU - 1.0).abs() < 1e-9, "{point:?}");
+        assert!((point.peak - 0.1).abs() < 1e-9 && point.events == 2, "{point:?}");
+        assert!(point.multipliers.is_some_and(|all| all[0].norm() < 1e-9), "{point:?}");
+    }
+}
+
+/// `v' = I - v` that fires at 1 and begins anew: T = ln(I/(I - 1)).
+#[test]
+fn what_fires_and_begins_anew_has_a_limit_cycle() {
+    let asked = asked("v' = w - v", &["v > 1: v = 0"], 1);
+    let found = respond(&ResponseRequest { range: [1.2, 3.0], ..asked }).expect("a response");
+    assert_eq!(found.branches.len(), 1);
+    for point in points(&found) {
+        let period = (point.parameter / (point.parameter - 1.0)).ln();
+        assert!((point.frequency * period / std::f64::consts::TAU - 1.0).abs() < 1e-9, "{point:?}");
+        assert_eq!(point.multipliers.map(|all| all[0].norm()), Some(0.0));
+    }
+}
+
+/// Equations of first order beside a wall, written before and behind that of the body, change nothing of its impacts.
+#[test]
+fn equations_of_first_order_stand_beside_a_wall() {
+    use lindstedt::wall::Wall;
+    let walls = Wall::parse("x < 1/2", &"4/5".parse().unwrap()).unwrap();
+    let answer = |equations: &str| {
+        let asked = asked(equations, &[], 1);
+        respond(&ResponseRequest { walls: walls.clone(), of: "x".parse().ok(), ..asked })
+    };
+    let alone = answer("x'' + x'/10 + x = cos(w*t)").expect("a response");
+    for equations in
+        ["x'' + x'/10 + x = cos(w*t); y' = x - y", "y' = x - y; x'' + x'/10 + x = cos(w*t)"]
+    {
+        let beside = answer(equations).expect(equations);
+        let ends = |found: &ResponseDiagram| {
+            let mut ends: Vec<[f64; 3]> = { &found.branches }
+                .iter()
+                .flat_map(|branch| [branch.points.first(), branch.points.last()])
+                .flatten()
+                .filter(|point| [0.9, 1.2].contains(&point.parameter))
+                .map(|point| [point.parameter, point.peak, point.impacts as f64])
+                .collect();
+            ends.sort_by(|one, other| one.partial_cmp(other).expect("numbers"));
+            ends
+        };
+        let (one, other) = (ends(&alone), ends(&beside));
+        assert!(!one.is_empty() && one.len() == other.len(), "{one:?} {other:?}");
+        for (one, other) in one.into_iter().zip(other) {
+            assert!((one[1] - other[1]).abs() < 1e-8 && one[2] == other[2], "{one:?} {other:?}");
+        }
+    }
+    let of_gap = asked("x'' + x = cos(w*t); y' = x - y", &[], 1);
+    let walls = Wall::parse("x < y", &"4/5".parse().unwrap()).unwrap();
+    let refused = respond(&ResponseRequest { walls, ..of_gap }).expect_err("no mass");
+    assert!(refused.to_string().contains("`y` is of first order"), "{refused}");
+}

@@ -53,9 +53,10 @@ pub enum WallError {
     /// A velocity occurs in a gap.
     #[error("the wall `{0} = 0` contains the velocity `{1}`: a wall has a position")]
     Velocity(Expr, Symbol),
-    /// A wall in equations of which one is of first order.
+    /// A wall whose gap has a coordinate of an equation of first order, or one in equations in which the
+    /// rate of such a coordinate stands beside an acceleration.
     #[error(
-        "the wall `{0} = 0` turns velocities round, but the equation of `{1}` is of first order"
+        "the wall `{0} = 0` turns velocities round, but the equation of `{1}` is of first order, and `{1}` is in the gap or in the equation of another coordinate's acceleration: give `{1}` a mass"
     )]
     FirstOrder(Expr, Symbol),
     /// A wall in coupled equations without a mass matrix.
@@ -78,9 +79,10 @@ pub struct WallImpact {
     pub gap: Expr,
     /// Its rate g' in coordinates, velocities and time.
     pub rate: Expr,
-    /// n = dg/dq for each coordinate.
+    /// n = dg/dq for each coordinate, zero for those of equations of first order.
     pub normal: Vec<Expr>,
-    /// d = M^-1 n for each coordinate: the change of the velocities by a unit of momentum of the wall.
+    /// d = M^-1 n for each coordinate: the change of the velocities by a unit of momentum of the wall; zero for
+    /// those of equations of first order, which have no velocity.
     pub direction: Vec<Expr>,
 }
 
@@ -90,7 +92,8 @@ impl WallImpact {
         self.normal.iter().zip(&other.direction).map(|(n, d)| n * d).sum()
     }
 
-    /// The velocities after an impact, q' - (1 + e) d g'/(n.d), in the order of the coordinates.
+    /// The velocities after an impact, q' - (1 + e) d g'/(n.d), in the order of the coordinates; of one of an
+    /// equation of first order its rate, which an impact leaves as it is.
     ///
     /// # Errors
     /// A failed step of algebra.
@@ -146,7 +149,8 @@ impl Wall {
     ///
     /// # Errors
     /// [`WallError`] for a gap without a coordinate or with a velocity, a coordinate without a velocity
-    /// among the states, or coefficients that are not a mass matrix.
+    /// among the states that is in the gap or in the mass matrix beside others, or coefficients that are not a
+    /// mass matrix.
     ///
     /// ```
     /// # use lindstedt_dynamics as lindstedt;
@@ -168,8 +172,16 @@ impl Wall {
         mass: Option<&[Vec<Expr>]>,
     ) -> Result<WallImpact, WallError> {
         self.check(coordinates)?;
-        if let Some(name) = coordinates.iter().find(|name| !states.contains(&name.derivative())) {
-            return Err(WallError::FirstOrder(self.gap.clone(), *name));
+        for (index, name) in coordinates.iter().enumerate() {
+            let is_beside = |mass: &[Vec<Expr>]| {
+                let others = (0..mass.len()).filter(|other| *other != index);
+                { others }.any(|j| !(mass[index][j].is_zero() && mass[j][index].is_zero()))
+            };
+            let is_free = states.contains(&name.derivative())
+                || !self.gap.contains(*name) && !mass.is_some_and(is_beside);
+            if !is_free {
+                return Err(WallError::FirstOrder(self.gap.clone(), *name));
+            }
         }
         let normal: Vec<Expr> = coordinates
             .iter()

@@ -80,13 +80,16 @@ pub(super) fn resting_equations(
         let right: Vec<Expr> = bearing.iter().map(|wall| -&wall.free).collect();
         let singular = || MechanicsError::Singular(matrix.iter().flatten().cloned().sum());
         let forces = linear::solution(&matrix, &right, &rates.states, singular)?;
-        let count = course.coordinates.len();
         for ((index, wall), force) in resting.iter().zip(&bearing).zip(&forces) {
-            for (k, direction) in wall.impact.direction.iter().enumerate() {
-                rates.right[count + k] = &rates.right[count + k] + &(direction * force);
+            let WallImpact { normal, direction, .. } = &wall.impact;
+            for ((name, n), direction) in course.coordinates.iter().zip(normal).zip(direction) {
+                let velocity = name.derivative();
+                // A coordinate of an equation of first order has none.
+                let place = rates.states.iter().position(|state| *state == velocity);
+                let Some(place) = place else { continue };
+                rates.right[place] = &rates.right[place] + &(direction * force);
+                power.push(n * Expr::from(velocity) * force);
             }
-            let closing = wall.impact.normal.iter().zip(&rates.states[count..]);
-            power.extend(closing.map(|(n, velocity)| n * Expr::from(*velocity) * force));
             guards[*index] = force.clone();
         }
     }

@@ -114,6 +114,8 @@ pub(super) struct CompiledWalls {
     pub(super) work: Option<usize>,
     /// The numbers of coordinates and of states.
     counts: [usize; 2],
+    /// The index of the coordinate of each velocity: all but those of equations of first order.
+    moving: Vec<usize>,
 }
 
 /// The values of the functions of a wall at a state.
@@ -189,6 +191,9 @@ impl CompiledWalls {
                 .map_err(|error| TrajectoryError::WallUndefined(wall.impact.gap.clone(), error))
         };
         let functions = walls.iter().map(compiled).collect::<Result<_, _>>()?;
+        let has_velocity =
+            |index: &usize| states.contains(&course.coordinates[*index].derivative());
+        let moving = (0..course.coordinates.len()).filter(has_velocity).collect();
         let gaps: Vec<Expr> = walls.iter().map(|wall| wall.impact.gap.clone()).collect();
         let undefined = |error| TrajectoryError::WallUndefined(gaps[0].clone(), error);
         Ok(Some(Self {
@@ -199,6 +204,7 @@ impl CompiledWalls {
             work: work_of(course, WORK_OF_WALLS),
             evaluation,
             counts: [course.coordinates.len(), states.len()],
+            moving,
         }))
     }
 
@@ -242,14 +248,15 @@ impl CompiledWalls {
     fn size_of_gap(&self, at: &AtWall, state: &[f64], largest: f64) -> f64 {
         const PART_OF_FLIGHT: f64 = 1e-3;
         let [coordinates, states] = self.counts;
-        let in_gap = |values: &[f64]| {
-            let parts = at.normal().iter().zip(values).map(|(n, value)| (n * value).abs());
-            parts.fold(0.0, f64::max)
-        };
-        let speed = in_gap(&state[coordinates..states]);
+        let normal = at.normal();
+        let velocities = self.moving.iter().zip(&state[coordinates..states]);
+        let speed = velocities.map(|(index, v)| (normal[*index] * v).abs()).fold(0.0, f64::max);
+        let positions =
+            normal.iter().zip(&state[..coordinates]).map(|(n, value)| (n * value).abs());
+        let position = positions.fold(0.0, f64::max);
         let flight = PART_OF_FLIGHT * speed * speed / at.free.abs();
         let flight = if flight.is_finite() { flight } else { 0.0 };
-        largest.max(in_gap(&state[..coordinates])).max(flight)
+        largest.max(position).max(flight)
     }
 
     /// Whether a motion is behind a wall, beyond rounding; `gaps` is memory for a number for each.
@@ -346,8 +353,9 @@ impl CompiledWalls {
                 chatter.insert(wall, sum);
             }
             let change = (departure - at.rate) / compliance;
-            for (velocity, direction) in state[coordinates..states].iter_mut().zip(at.direction()) {
-                *velocity += change * direction;
+            let velocities = state[coordinates..states].iter_mut();
+            for (velocity, index) in velocities.zip(&self.moving) {
+                *velocity += change * at.direction()[*index];
             }
             let after = self.evaluation.energy(time, state);
             let loss = before.zip(after).map(|(before, after)| before - after);
@@ -503,8 +511,8 @@ impl CompiledWalls {
         }
         let later = || {
             let mut state = state[..states].to_vec();
-            for index in 0..coordinates {
-                state[index] += MOMENT * state[coordinates + index];
+            for (velocity, index) in self.moving.iter().enumerate() {
+                state[*index] += MOMENT * state[coordinates + velocity];
             }
             self.at(wall, time + MOMENT, &state).free
         };

@@ -482,16 +482,32 @@ impl CoupledProblem<'_> {
         if flow.least_gap(start, orbit.kept.section, orbit.parameter(), &sizes) < NEAR * NEAR {
             return Some(BranchEnd::ImpactAtStart);
         }
-        if orbit.kept.encounters.counts() != [0; 3] {
-            return (orbit.kept.encounters.slowest < SLOW).then_some(BranchEnd::Grazing);
+        if orbit.kept.encounters.slowest < SLOW {
+            return Some(BranchEnd::Grazing);
         }
         const PLACES: usize = 256;
+        /// Part of the period about an impact or event within which a small gap is that of it.
+        const ABOUT: f64 = 0.02;
         let period = std::f64::consts::TAU / self.frequency_of(orbit);
         let begin = self.time_of_section(orbit);
         let path = self.by_series(start, [begin, period], orbit.parameter())?;
         let numbers = [(self.question.parameter, orbit.parameter())];
+        let is_of_event = |part: f64| {
+            let parts = orbit.kept.encounters.times.iter().map(|time| match self.kind {
+                Kind::Driven(_) => (time - orbit.kept.section) / TAU,
+                Kind::SelfExcited | Kind::Free => time / period,
+            });
+            { parts }.any(|own| {
+                let apart = own - part;
+                (apart - apart.round()).abs() < ABOUT
+            })
+        };
         let is_near = |index: usize| {
-            let time = period * index as f64 / PLACES as f64;
+            let part = index as f64 / PLACES as f64;
+            if is_of_event(part) {
+                return false;
+            }
+            let time = period * part;
             let Some(states) = path.states_at(time) else { return false };
             let mut values: std::collections::BTreeMap<_, _> =
                 self.states.iter().copied().zip(states.iter().copied()).chain(numbers).collect();
@@ -558,6 +574,34 @@ impl CoupledProblem<'_> {
                     }
                 }
             }
+            index += 1;
+        }
+    }
+
+    /// Leaves out the branches that lie on others: where one ends at a corner or a grazing, another that was found
+    /// later may come through it.
+    pub(super) fn without_parts(&self, known: &mut Known) {
+        let mut index = 0;
+        while index < known.branches.len() {
+            let branch = &known.branches[index];
+            let is_cut = branch.ends.iter().any(|end| {
+                matches!(end, BranchEnd::Lost | BranchEnd::Grazing | BranchEnd::ImpactAtStart)
+            });
+            let count = branch.orbits.len();
+            if !is_cut || count < 4 || self.question.interrupt.is_requested() {
+                index += 1;
+                continue;
+            }
+            let branch = known.branches.remove(index);
+            let mut on = [1, count / 2, count - 2].into_iter().map(|place| {
+                let found = self.find(&branch.orbits[place], known)?;
+                (!found.mirrored).then_some(found.branch)
+            });
+            let first = on.next().flatten();
+            if first.is_some() && on.all(|other| other == first) {
+                continue;
+            }
+            known.branches.insert(index, branch);
             index += 1;
         }
     }

@@ -176,13 +176,33 @@ impl CoupledProblem<'_> {
         let zero: Vec<f64> = (0..n).map(|k| beside * (2.0 * spread(0, k) - 1.0)).collect();
         let fastest = self.growth(&zero, parameter)?.into_iter().map(|value| value.norm());
         let fastest = fastest.fold(0.0, f64::max);
-        let unit = TAU / if fastest > 0.0 { fastest } else { 1.0 };
+        let mut unit = TAU / if fastest > 0.0 { fastest } else { 1.0 };
         let largest = scale.iter().take(m).copied().fold(0.0, f64::max);
         let size =
             (if largest > 0.0 { largest } else { 1.0 }) * 0.1 * 30.0_f64.powf(spread(index, 0));
-        let start: Vec<f64> = (0..n).map(|k| size * (2.0 * spread(index, k + 1) - 1.0)).collect();
+        let mut start: Vec<f64> =
+            (0..n).map(|k| size * (2.0 * spread(index, k + 1) - 1.0)).collect();
+        if let Some(modes) = &self.modes {
+            modes.set(&mut start, index);
+        }
+        // A relay may switch often in a period of small motions.
+        const MOST_EVENTS: usize = 24;
+        const HALVINGS: usize = 16;
+        let events_from = |start: &[f64], duration: f64| {
+            let sizes = self.sizes_of_start(start, scale);
+            self.in_time.event_times(start, [0.0, duration], parameter, &sizes)
+        };
+        let mut halvings = if self.question.has_jumps_of_states() { HALVINGS } else { 0 };
+        while halvings > 0
+            && events_from(&start, unit).is_none_or(|events| events.len() > MOST_EVENTS)
+        {
+            unit *= 0.5;
+            halvings -= 1;
+        }
         let settled = self.after(&start, [0.0, SETTLING * unit], parameter, scale)?;
-        let path = self.by_series(&settled, [0.0, 12.0 * unit], parameter)?;
+        let events = events_from(&settled, 12.0 * unit)?;
+        let duration = events.get(MOST_EVENTS).copied().unwrap_or(12.0 * unit);
+        let path = self.by_series(&settled, [0.0, duration], parameter)?;
         let rates = self.in_time.rates_at(&settled, 0.0, parameter);
         let mut low = settled.clone();
         let mut high = settled.clone();
@@ -223,22 +243,46 @@ impl CoupledProblem<'_> {
                 (0..CELLS).max_by(|one, other| height(*one).total_cmp(&height(*other)))?;
             Some((state, path.states_at(place(highest))?))
         };
-        let mut states: Vec<usize> = (0..n).collect();
+        // What only events set has no rate.
+        let mut states: Vec<usize> = (0..n).filter(|state| !self.right[*state].is_zero()).collect();
         states.sort_by(|one, other| {
             (one >= &m).cmp(&(other >= &m)).then(travel[*other].total_cmp(&travel[*one]))
         });
         let is_smooth = |state: &&usize| self.in_time.has_smooth_turn(&self.states, **state);
-        let (turning, begin) = highest(*states.iter().find(is_smooth)?)?;
-        let unknowns = begin.into_iter().chain([period]).collect();
-        Some((
-            Start { parameter, unknowns, section: 0.0 },
-            anchor_of(turning, travel[turning], period),
-        ))
+        let turning = states.iter().find(is_smooth).and_then(|state| highest(*state));
+        // Where an event turns the coordinate round, its rate does not vanish.
+        const TURNS: f64 = 1.0;
+        let turns = |(state, begin): &(usize, Vec<f64>)| {
+            let rate = self.in_time.rates_at(begin, 0.0, parameter)[*state];
+            rate.abs() * period <= TURNS * travel[*state]
+        };
+        let (begin, anchor) = match turning.filter(turns) {
+            Some((state, begin)) => (begin, anchor_of(state, travel[state], period)),
+            // It begins at the middle of the way of the state that moves most: at that of many points which is
+            // nearest to it.
+            None => {
+                let flows =
+                    |state: &&usize| !self.right[**state].is_zero() && travel[**state] > 0.0;
+                let state = *states.iter().find(flows)?;
+                let middle = 0.5 * (low[state] + high[state]);
+                let states = (0..CELLS).filter_map(|cell| path.states_at(place(cell)));
+                let apart = |states: &Vec<f64>| (states[state] - middle).abs();
+                let begin = { states }.min_by(|one, other| apart(one).total_cmp(&apart(other)))?;
+                (begin, anchor_at_level(state, middle, travel[state], period))
+            }
+        };
+        let unknowns: Vec<f64> = begin.into_iter().chain([period]).collect();
+        Some((Start { parameter, unknowns, section: 0.0 }, anchor))
     }
+}
+
+/// The anchor of a cycle where a coordinate passes a level, for motions of this travel and period.
+fn anchor_at_level(state: usize, level: f64, travel: f64, period: f64) -> Anchor {
+    Anchor { state, size: travel / period, level: Some(level), ..Anchor::NONE }
 }
 
 /// The anchor of a cycle at a turn of a coordinate, for motions of this travel and period.
 fn anchor_of(state: usize, travel: f64, period: f64) -> Anchor {
     let travel = if travel > 0.0 { travel } else { 1.0 };
-    Anchor { state, size: travel / (period * period), from_rest: false, section: 0.0 }
+    Anchor { state, size: travel / (period * period), ..Anchor::NONE }
 }

@@ -9,7 +9,6 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
-use num_complex::Complex;
 
 use super::branches::{Known, OrbitBranch};
 use super::changes::{changes_between, least_squares};
@@ -372,8 +371,10 @@ impl CoupledProblem<'_> {
         let (amplitude, phase) = polar(&shown);
         let stable = multipliers.as_ref().map(|all| self.is_stable(all));
         let two = multipliers.map(|all| {
-            let get = |index: usize| all.get(index).copied().unwrap_or(Complex::from(1.0));
-            [get(0), get(1)]
+            let get = |index: usize| all.get(index).copied();
+            // A cycle of one state has no other: after an event nothing but the phase is left of a disturbance.
+            let none = if matches!(self.kind, Kind::SelfExcited) { 0.0 } else { 1.0 };
+            [get(0).unwrap_or(none.into()), get(1).unwrap_or(1.0.into())]
         });
         // The place and the rate of the quantity that is listed, at the beginning.
         let place = self.shown.call(&start[..m]);

@@ -101,7 +101,7 @@ impl CoupledProblem<'_> {
         guess[n + 1] = frequency;
         for _ in 0..DOUBLINGS {
             let turn = size * shape[largest].abs();
-            let anchor = Anchor { state: largest, size: turn, from_rest, section: 0.0 };
+            let anchor = Anchor { state: largest, size: turn, from_rest, ..Anchor::NONE };
             let travel: Vec<f64> = (0..n)
                 .map(|i| size * shape[i % m].abs() * if i < m { 1.0 } else { frequency })
                 .collect();

@@ -51,12 +51,15 @@ pub(super) struct Course {
 /// An orbit of a branch.
 pub(super) type Orbit = OrbitPoint<Course>;
 
-/// The beginning of a motion: of one without a drive the state whose rate is zero there, and a size for
-/// that rate over the unknown that goes with it; of a driven one the phase.
+/// The beginning of a motion: of one without a drive the state whose rate is zero there, or which has a level there,
+/// and a size for that rate or for its distance from the level over the unknown that goes with it; of a driven one the
+/// phase.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Anchor {
     pub(super) state: usize,
     pub(super) size: f64,
+    /// The level of the state; `None` if its rate is zero.
+    pub(super) level: Option<f64>,
     /// Whether all rates are zero there, and half a period later: of free motions beside which there are
     /// others with a shift between the coordinates, so that the one rate does not fix the motion.
     pub(super) from_rest: bool,
@@ -66,7 +69,8 @@ pub(super) struct Anchor {
 
 impl Anchor {
     /// The anchor of driven motions that begin at phase zero.
-    pub(super) const NONE: Self = Self { state: 0, size: 1.0, from_rest: false, section: 0.0 };
+    pub(super) const NONE: Self =
+        Self { state: 0, size: 1.0, level: None, from_rest: false, section: 0.0 };
 
     /// The anchor of driven motions that begin at a phase.
     pub(super) fn at_phase(section: f64) -> Self {
@@ -484,7 +488,7 @@ impl<'a> CoupledProblem<'a> {
         start: &[f64],
         parameter: f64,
         scale: &[f64],
-        Anchor { state, size, .. }: Anchor,
+        Anchor { state, size, level, .. }: Anchor,
     ) -> Option<PeriodImage<Course>> {
         let n = self.states.len();
         let (start, period) = (&start[..n], start[n]);
@@ -495,7 +499,18 @@ impl<'a> CoupledProblem<'a> {
         let sizes = self.sizes_of_start(start, scale);
         let image = self.in_time.image(start, [0.0, period], parameter, &sizes)?;
         let image = self.closed_modes(image, start)?;
-        let begin = self.in_time.linearised(start, 0.0, parameter);
+        // The condition that is zero at the beginning, with its derivatives by the states and by the parameter.
+        let (missed, by_state, by_own) = match level {
+            Some(level) => {
+                let own = |column| if column == state { 1.0 } else { 0.0 };
+                (start[state] - level, DVector::from_fn(n, |column, _| own(column)), 0.0)
+            }
+            None => {
+                let begin = self.in_time.linearised(start, 0.0, parameter);
+                let by_state = begin.by_state.row(state).transpose();
+                (begin.rates[state], by_state, begin.by_parameter[state])
+            }
+        };
         let flow = self.in_time.rates_at(image.end.as_slice(), 0.0, parameter);
         let path = Course {
             travel: image.travel,
@@ -506,13 +521,13 @@ impl<'a> CoupledProblem<'a> {
         let mut by_start = image.by_start.resize(n + 1, n + 1, 0.0);
         by_start.view_mut((0, n), (n, 1)).copy_from(&flow);
         for column in 0..n {
-            by_start[(n, column)] = begin.by_state[(state, column)] / size;
+            by_start[(n, column)] = by_state[column] / size;
         }
         by_start[(n, n)] = 1.0;
         Some(PeriodImage {
-            end: image.end.push(period + begin.rates[state] / size),
+            end: image.end.push(period + missed / size),
             by_start,
-            by_parameter: image.by_parameter.push(begin.by_parameter[state] / size),
+            by_parameter: image.by_parameter.push(by_own / size),
             path,
         })
     }

@@ -139,6 +139,7 @@ impl CoupledProblem<'_> {
             false => self.checked_by_simulation(&mut known),
         };
         self.follow_crossings(&mut known);
+        self.without_parts(&mut known);
         Ok((self.diagram(&known, simulated, elsewhere), known))
     }
 

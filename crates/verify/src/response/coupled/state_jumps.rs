@@ -133,6 +133,9 @@ fn flow_wall(
 ) -> Result<FlowEvent, ResponseError> {
     let impact = wall.impact(coordinates, states, Some(mass))?;
     let velocities = impact.velocities_after(coordinates, &wall.restitution)?;
+    let has_velocity = |name: &Symbol| states.contains(&name.derivative());
+    let velocities = coordinates.iter().zip(velocities).filter(|(name, _)| has_velocity(name));
+    let velocities = velocities.map(|(_, after)| after);
     let positions = coordinates.iter().copied().map(Expr::from);
     let after = positions.chain(velocities).collect();
     let push = Some(impact.direction);

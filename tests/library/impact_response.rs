@@ -297,6 +297,28 @@ fn a_branch_grazes_where_the_free_motion_reaches_the_wall() {
     }
 }
 
+/// Beside the grazing, where the map has a root, the fold of the orbits with one impact is where both roots of their
+/// quadratic are one, `X^2 = b^2 d^2/(a^2 + b^2)` at w = 1.
+#[test]
+fn a_fold_beside_a_grazing_is_that_of_the_closed_form() {
+    let asked = question("x'' + x'/10 + x = F*cos(t)", &[("x < 1", "4/5")], ("F", [0.05, 0.3]), "");
+    let found = respond(&asked).expect("a response");
+    let (e, beta) = (0.8, 0.05_f64);
+    let frequency = (1.0 - beta * beta).sqrt();
+    let (sine, cosine) = (2.0 * PI * frequency).sin_cos();
+    let decay = (-2.0 * PI * beta).exp();
+    let (c, s) = (decay * cosine, decay * sine / frequency);
+    let determinant = 1.0 - 2.0 * c + decay * decay;
+    let a = s * (1.0 + e) / determinant;
+    let b = e - (1.0 + e) * (1.0 - c - beta * s) / determinant;
+    // The steady wave of the drive F has the amplitude 10 F.
+    let fold = 0.1 * b.abs() / a.hypot(b);
+    let folds = found.bifurcations.iter().filter(|own| own.kind == BifurcationKind::Fold);
+    let folds: Vec<&Bifurcation> = folds.collect();
+    let [own] = folds[..] else { panic!("{:?}", found.bifurcations) };
+    assert!((own.parameter - fold).abs() < 1e-8, "{own:?} {fold}");
+}
+
 /// Branches on both sides of a grazing are found: below it the free motion, above it the fold at which the
 /// two motions with an impact meet, the root of the discriminant of their quadratic.
 #[test]

@@ -150,7 +150,7 @@ impl<'a> Between<'a> {
             .any(|(other, _)| (other - part).abs() < NEAR)
     }
 
-    /// The orbit at a part of the way.
+    /// The orbit at a part of the way; `None` if none is found that is no further from the way than this is long.
     fn at(&mut self, part: f64) -> Option<Orbit> {
         let index = self.found.partition_point(|(other, _)| *other < part);
         if let Some((_, orbit)) = self.found.get(index).filter(|(other, _)| *other == part) {
@@ -159,13 +159,36 @@ impl<'a> Between<'a> {
         let (low, before) = self.found.get(index.checked_sub(1)?)?;
         let (high, behind) = self.found.get(index)?;
         let share = (part - low) / (high - low);
-        let near = &before.unknowns + (&behind.unknowns - &before.unknowns) * share;
         let [from, to] = self.ends;
-        let orbit = self.orbits.between_from([from, to], part, &near);
-        let orbit = orbit.or_else(|| self.orbits.between(from, to, part))?;
+        let sizes = (self.orbits.sizes)(from);
+        let way = &to.unknowns - &from.unknowns;
+        let length = way.component_div(&sizes).norm();
+        let place = &from.unknowns + way * part;
+        // Where a root acts Newton's method may come to another motion.
+        let is_near =
+            |orbit: &Orbit| (&orbit.unknowns - &place).component_div(&sizes).norm() <= length;
+        let near = on_cubic([before, behind], share, &sizes);
+        let orbit = self.orbits.between_from([from, to], part, &near).filter(is_near);
+        let orbit = orbit.or_else(|| self.orbits.between(from, to, part).filter(is_near))?;
         self.found.insert(index, (part, orbit.clone()));
         Some(orbit)
     }
+}
+
+/// The unknowns at a part of the way between two orbits, on the cubic through both with their tangents, everything in
+/// these sizes.
+fn on_cubic([from, to]: [&Orbit; 2], part: f64, sizes: &DVector<f64>) -> DVector<f64> {
+    let chord = (&to.unknowns - &from.unknowns).component_div(sizes);
+    let length = chord.norm();
+    let along = |orbit: &Orbit| {
+        let tangent = orbit.tangent.component_div(sizes).normalize() * length;
+        // A tangent that leads back is none of this way.
+        if tangent.dot(&chord) > 0.0 { tangent } else { chord.clone() }
+    };
+    let rest = 1.0 - part;
+    let aside = (along(from) - &chord) * rest - (along(to) - &chord) * part;
+    let moved = &chord * part + aside * (part * rest);
+    &from.unknowns + moved.component_mul(sizes)
 }
 
 /// The orbit between two others at which the number of impacts in a period changes.

@@ -137,6 +137,7 @@ pub struct OrbitBranchLimits {
 ///     map: &map,
 ///     smooth: true,
 ///     accuracy: 4e-15,
+///     rounding: 1e-9,
 ///     keep: &|_, _| (),
 ///     sizes: &|_| vector(&[1.0, 1.0]),
 /// };
@@ -156,6 +157,9 @@ pub struct OrbitEquations<'a, Path, Kept> {
     pub smooth: bool,
     /// Relative accuracy of the map: a step of Newton's method that is no longer changes nothing.
     pub accuracy: f64,
+    /// The miss of the map, over its steepest slope, up to which steps of Newton's method that no longer shrink are
+    /// rounding: beside a corner steps go from one side to the other and back, as small and never an orbit.
+    pub rounding: f64,
     /// The data that are kept of an orbit with these unknowns.
     pub keep: &'a dyn Fn(&DVector<f64>, &PeriodImage<Path>) -> Kept,
     /// The positive sizes in which changes of the unknowns are measured near an orbit.
@@ -208,17 +212,15 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         const CONVERGED: f64 = 1e-10;
         const NEXT_IS_ROUNDING: f64 = 1e-8;
         /// Length below which steps that no longer shrink are rounding, which is magnified near
-        /// folds, and the miss of the map, over its steepest slope, up to which they are: beside a
-        /// corner steps go from one side to the other and back, as small and never an orbit.
+        /// folds.
         const ROUNDING: f64 = 1e-6;
-        const MISSED_BY_ROUNDING: f64 = 1e-9;
         let mut unknowns = guess.clone();
         let mut before = f64::INFINITY;
         for periods in 1..=MOST {
             let image = self.image(&unknowns)?;
             let (matrix, mut missed) = Self::bordered(&image, &unknowns, direction, sizes);
             let away = (&unknowns - guess).component_div(sizes);
-            let by_rounding = MISSED_BY_ROUNDING * (1.0 + matrix.amax());
+            let by_rounding = self.rounding * (1.0 + matrix.amax());
             let is_rounding = missed.amax() <= by_rounding;
             missed[unknowns.len() - 1] = direction.dot(&away);
             let factors = matrix.lu();
@@ -649,6 +651,7 @@ mod tests {
             map: &map,
             smooth: false,
             accuracy: 4e-15,
+            rounding: 1e-9,
             keep: &|_, _| (),
             sizes: &|_| vector(&[1.0, 1.0]),
         };
@@ -685,6 +688,7 @@ mod tests {
             map: &map,
             smooth: false,
             accuracy: 4e-15,
+            rounding: 1e-9,
             keep: &|_, _| (),
             sizes: &|_| vector(&[1.0, 1.0]),
         };
@@ -715,6 +719,7 @@ mod tests {
             map: &map,
             smooth: true,
             accuracy: 4e-15,
+            rounding: 1e-9,
             keep: &|_, _| (),
             sizes: &|_| sizes.clone(),
         };
@@ -734,6 +739,7 @@ mod tests {
             map: &map,
             smooth: false,
             accuracy: 4e-15,
+            rounding: 1e-9,
             keep: &|_, _| (),
             sizes: &|_| vector(&[1.0, 1.0]),
         };
@@ -786,6 +792,7 @@ mod tests {
             map: &map,
             smooth: false,
             accuracy: 4e-15,
+            rounding: 1e-9,
             keep: &|_, _| (),
             sizes: &|_| sizes.clone(),
         };
@@ -839,6 +846,7 @@ mod tests {
             map: &map,
             smooth: false,
             accuracy: 4e-15,
+            rounding: 1e-9,
             keep: &|_, _| (),
             sizes: &|_| sizes.clone(),
         };

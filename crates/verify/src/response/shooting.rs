@@ -106,6 +106,8 @@ impl PreparedRequest<'_> {
             map: &map,
             smooth: false,
             accuracy: 4e-15,
+            // Past the touch of a stop that is very stiff the way leads by orbits that miss by as much.
+            rounding: 1e-6,
             keep: &keep,
             sizes: &sizes,
         }))

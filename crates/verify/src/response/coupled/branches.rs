@@ -584,16 +584,19 @@ impl CoupledProblem<'_> {
         let mut index = 0;
         while index < known.branches.len() {
             let branch = &known.branches[index];
-            let is_cut = branch.ends.iter().any(|end| {
+            let [first, last] = branch.ends.map(|end| {
                 matches!(end, BranchEnd::Lost | BranchEnd::Grazing | BranchEnd::ImpactAtStart)
             });
             let count = branch.orbits.len();
-            if !is_cut || count < 4 || self.question.interrupt.is_requested() {
+            if !(first || last) || count < 4 || self.question.interrupt.is_requested() {
                 index += 1;
                 continue;
             }
             let branch = known.branches.remove(index);
-            let mut on = [1, count / 2, count - 2].into_iter().map(|place| {
+            // At the corner itself no orbit may be found.
+            let begin = if first { count / 4 } else { 0 };
+            let end = if last { 3 * count / 4 } else { count - 1 };
+            let mut on = [begin, count / 2, end].into_iter().map(|place| {
                 let found = self.find(&branch.orbits[place], known)?;
                 (!found.mirrored).then_some(found.branch)
             });

@@ -291,6 +291,7 @@ impl TwoParameters<'_> {
             map: &map,
             smooth: !self.flow.jumps(),
             accuracy: TOLERANCE,
+            rounding: 1e-9,
             keep: &|_, image: &PeriodImage<Vec<f64>>| image.path.clone(),
             sizes: &|_| sizes.clone(),
         };

@@ -79,6 +79,7 @@ impl CoupledProblem<'_> {
             map: &map,
             smooth: true,
             accuracy: 4e-15,
+            rounding: 1e-9,
             keep: &|_, _| (),
             sizes: &sizes,
         };

@@ -153,6 +153,7 @@ impl TwoParameters<'_> {
             map: &map,
             smooth: false,
             accuracy: TOLERANCE,
+            rounding: 1e-9,
             keep: &|_, image: &PeriodImage<Vec<f64>>| image.path.clone(),
             sizes: &|_| sizes.clone(),
         };

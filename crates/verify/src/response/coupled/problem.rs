@@ -411,6 +411,7 @@ impl<'a> CoupledProblem<'a> {
             map: &map,
             smooth: self.smooth,
             accuracy: TOLERANCE,
+            rounding: 1e-9,
             keep: &keep,
             sizes: &sizes,
         })

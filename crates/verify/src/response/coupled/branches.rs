@@ -588,7 +588,8 @@ impl CoupledProblem<'_> {
                 matches!(end, BranchEnd::Lost | BranchEnd::Grazing | BranchEnd::ImpactAtStart)
             });
             let count = branch.orbits.len();
-            if !(first || last) || count < 4 || self.question.interrupt.is_requested() {
+            let is_over = self.question.interrupt.is_requested() || self.is_exhausted();
+            if !(first || last) || count < 4 || is_over {
                 index += 1;
                 continue;
             }

@@ -348,7 +348,8 @@ mod tests {
     fn short_numbers_are_those_of_any_size() {
         let values =
             [0.5, 0.02, 0.0999, 0.96, 9.96, 1.0, 12.5, 0.125, 1.0 / 3.0, 2.0 / 7.0, 99_999.5];
-        let others = [std::f64::consts::PI, 0.707_106_781_186_547_6, 1234.567_89, 0.099_96];
+        let others =
+            [std::f64::consts::PI, std::f64::consts::FRAC_1_SQRT_2, 1_234.567_89, 0.099_96];
         for value in values.into_iter().chain(others).flat_map(|value| [value, -value]) {
             for (error, most) in [(1e-2, 4), (3e-5, 7), (1e-11, 12)] {
                 let expected = numbers_of_any_size(value, most, &short_fractions(value.abs()));

@@ -272,6 +272,7 @@ impl PreparedRequest<'_> {
     ) {
         let [known, mut new] = self.motions_on(balance, branches, values);
         new.extend(self.near_mirror_images(&known));
+        found.images = self.images_of(&known);
         found.known = known;
         let begin = |(parameter, motion): &(f64, TrueMotion)| PlannedSimulation {
             seed: None,
@@ -280,7 +281,27 @@ impl PreparedRequest<'_> {
         };
         let planned: Vec<PlannedSimulation> = new.iter().map(begin).collect();
         self.add_settled(&planned, found);
+        found.images.extend(self.images_of(&new));
         found.known.extend(new);
+    }
+
+    /// The images of the stable ones of these motions, each with its value of the parameter: the same motions drive
+    /// periods later, and where the force is odd their mirror images. Simulations come to them as well.
+    fn images_of(&self, motions: &[(f64, TrueMotion)]) -> Vec<(f64, TrueMotion)> {
+        let [low, high] = self.question.range;
+        let is_odd = self.is_odd(0.5 * (low + high));
+        if self.question.periods == 1 && !is_odd {
+            return vec![];
+        }
+        let stable = motions.iter().filter(|(_, motion)| motion.floquet.largest() < 1.0);
+        let images = stable.flat_map(|&(parameter, motion)| {
+            let starts = self.images(motion.start, parameter, motion.peak);
+            // Every other one is half a drive period later, and mirrored.
+            let starts = starts.into_iter().enumerate().skip(1);
+            let own = starts.filter(|(halves, _)| is_odd || halves.is_multiple_of(2));
+            own.map(move |(_, start)| (parameter, TrueMotion { start, ..motion }))
+        });
+        images.collect()
     }
 
     /// The number of speeds that starts all around have at each place: that of the drive, and for motions

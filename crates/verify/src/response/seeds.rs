@@ -75,6 +75,7 @@ impl PreparedRequest<'_> {
             budget: self.budget(),
             size: 0.0,
             known: vec![],
+            images: vec![],
             returns: vec![],
         };
         let known = self.search_from_rest(&balance, &values, &mut found);
@@ -400,7 +401,7 @@ impl PreparedRequest<'_> {
                 start: planned.start,
                 parameter: planned.parameter,
                 most: PERIODS,
-                known: found.stable_at(planned.parameter).collect(),
+                known: found.places_at(planned.parameter).collect(),
             };
             let starts: Vec<SettlingStart> = planned.iter().map(start).collect();
             let all = settle_together(&self.driven, &starts, CLOSELY, &mut found.budget);
@@ -437,6 +438,8 @@ pub(super) struct Search {
     pub(super) size: f64,
     /// Motions of the first branches, each with its value of the parameter.
     pub(super) known: Vec<(f64, TrueMotion)>,
+    /// Images of the stable ones of them.
+    pub(super) images: Vec<(f64, TrueMotion)>,
     /// Guesses of motions that simulations that do not become periodic surround.
     pub(super) returns: Vec<MotionGuess>,
 }
@@ -446,6 +449,12 @@ impl Search {
     pub(super) fn stable_at(&self, parameter: f64) -> impl Iterator<Item = TrueMotion> {
         let own = self.known.iter().filter(move |(value, _)| *value == parameter);
         own.map(|(_, motion)| *motion).filter(|motion| motion.floquet.largest() < 1.0)
+    }
+
+    /// The stable motions that are known at a value of the parameter, and their images.
+    fn places_at(&self, parameter: f64) -> impl Iterator<Item = TrueMotion> {
+        let images = self.images.iter().filter(move |(value, _)| *value == parameter);
+        self.stable_at(parameter).chain(images.map(|(_, motion)| *motion))
     }
 }
 

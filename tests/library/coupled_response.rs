@@ -6,8 +6,8 @@ use lindstedt::numeric::ode::{IntegrationOptions, Point, integrate_first_order};
 use lindstedt::response::bifurcation::BifurcationKind;
 use lindstedt::response::continuation::BranchEnd;
 use lindstedt::response::{
-    Criticality, Equations, EquilibriumChange, ResponseDiagram, ResponseRequest, SteadyMotion,
-    respond,
+    AperiodicMotion, Criticality, Equations, EquilibriumChange, ResponseDiagram, ResponseRequest,
+    SteadyMotion, respond,
 };
 
 fn question(equations: &str, parameter: &str, range: [f64; 2], values: &str) -> ResponseRequest {
@@ -279,6 +279,47 @@ fn equilibria_cross_and_are_judged_by_their_eigenvalues() {
     let [crossing] = changes[..] else { panic!("{changes:?}") };
     assert_eq!(crossing.kind, BifurcationKind::BranchPoint);
     assert!((crossing.parameter + 0.02).abs() < 1e-7);
+}
+
+/// The branch y = x^2, r = x^2 - x crosses x = 0 at r = 0 aslant and folds at r = -1/4; beside it z = 0 has a pitchfork
+/// at r = 0.37, where x = sqrt(r) is 0.6083 on one branch and 0 on another.
+#[test]
+fn branch_points_of_equilibria_are_exact_on_both_branches() {
+    let crossings = |equations: &str| {
+        let found = respond(&question(equations, "r", [-1.0, 1.0], "")).expect("equilibria");
+        let changes: Vec<_> = found.equilibria.iter().flat_map(|one| one.changes.clone()).collect();
+        let is_crossing = |change: &&EquilibriumChange| change.kind == BifurcationKind::BranchPoint;
+        let crossings = changes.iter().filter(is_crossing);
+        crossings.map(|change| [change.parameter, change.value]).collect::<Vec<_>>()
+    };
+    let aslant = crossings("x' = r*x - x^3 + y; y' = -y + x^2");
+    assert_eq!(aslant.len(), 2, "{aslant:?}");
+    assert!(aslant.iter().flatten().all(|value| value.abs() < 1e-9), "{aslant:?}");
+    let beside = crossings("x' = r*x - x^3 + z^2; y' = -y + x; z' = (r - 0.37)*z - z^3");
+    let is_one = |[parameter, value]: &[f64; 2]| {
+        let places = [[0.0, 0.0], [0.37, 0.0], [0.37, 0.37_f64.sqrt()], [0.37, -0.37_f64.sqrt()]];
+        places.iter().any(|[p, x]| (parameter - p).abs() < 1e-9 && (value - x).abs() < 1e-8)
+    };
+    assert!(beside.len() >= 4 && beside.iter().all(is_one), "{beside:?}");
+}
+
+/// A coordinate without damping that nothing moves keeps its energy: the motion is not stable, and a simulation is not
+/// in chaos.
+#[test]
+fn a_coordinate_without_damping_is_neither_stable_nor_chaotic() {
+    let text = "x'' + x'/10 + x = cos(w*t); y'' + y = 0";
+    let found = respond(&question(text, "w", [1.2, 1.4], "")).expect(text);
+    assert!(
+        found
+            .branches
+            .iter()
+            .flat_map(|branch| &branch.points)
+            .all(|point| point.stable == Some(false))
+    );
+    for place in &found.elsewhere {
+        let chaotic = matches!(place.aperiodic, Some(AperiodicMotion::Chaotic(_)));
+        assert!(!chaotic, "{place:?}");
+    }
 }
 
 /// Two van der Pol oscillators locked to each other until w = 1.0500 (D. G. Aronson, G. B. Ermentrout

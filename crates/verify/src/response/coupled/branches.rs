@@ -379,9 +379,13 @@ impl CoupledProblem<'_> {
         let extent = |travel: &[f64]| travel[..n].iter().copied().fold(0.0, f64::max);
         let ordinary = scale.get(..n).map_or(0.0, extent);
         let bound = ENORMOUS * extent(&orbit.kept.travel).max(ordinary);
+        /// The number of states up to which the longest step is that of one coordinate; beyond it a step of each of
+        /// them is as long as with this number.
+        const FEW: usize = 8;
+        let many = (self.states.len().max(FEW) as f64 / FEW as f64).sqrt();
         let limits = OrbitBranchLimits {
             range: self.question.range,
-            longest: LONGEST_STEP,
+            longest: LONGEST_STEP * many,
             most: MOST_POINTS,
             interrupt: self.question.interrupt,
         };

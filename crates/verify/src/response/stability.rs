@@ -632,7 +632,7 @@ impl Settling {
     /// periods as it takes, which are more than one, and has been elsewhere in between.
     fn repeats_later(&self, omega: f64, extent: f64) -> bool {
         /// Parts of the extent below which states are one, and above which they are two.
-        const SAME: f64 = 1e-6;
+        const SAME: f64 = 1e-7;
         const OTHER: f64 = 1e-2;
         let end = self.states.len() - 1;
         let apart = |index: usize, count: usize| {

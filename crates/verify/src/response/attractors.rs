@@ -113,7 +113,8 @@ impl PreparedRequest<'_> {
             let has_small_basins = !found.motions.elsewhere.is_empty();
             let everywhere = round < ROUNDS && (branches.len() > known || has_small_basins);
             let is_asked = |interval: &Interval| everywhere || interval.needs_more();
-            if !intervals.iter().any(is_asked) || self.question.interrupt.is_requested() {
+            let is_over = found.is_spent() || self.question.interrupt.is_requested();
+            if is_over || !intervals.iter().any(is_asked) {
                 return;
             }
             before = found.motions.seeds.len();

@@ -451,6 +451,11 @@ impl Search {
         own.map(|(_, motion)| *motion).filter(|motion| motion.floquet.largest() < 1.0)
     }
 
+    /// Whether no evaluations are left.
+    pub(super) fn is_spent(&self) -> bool {
+        self.budget.evaluations == 0
+    }
+
     /// The stable motions that are known at a value of the parameter, and their images.
     fn places_at(&self, parameter: f64) -> impl Iterator<Item = TrueMotion> {
         let images = self.images.iter().filter(move |(value, _)| *value == parameter);

@@ -74,6 +74,8 @@ class Call:
     def worded(self, name: str, *more: str) -> list[str]:
         """The words with those of a format."""
         command, *rest = self.words
+        # A certificate of a law is a JSON document: its other formats are those of the laws.
+        rest = [word for word in rest if name == "json" or word != "--certificate"]
         return [command, "--format", name, *more, *rest]
 
 

@@ -305,7 +305,7 @@ mod tests {
         };
         // The balls are some 1e-30 wide.
         middles(&apart.cosines).value() <= own.tail.value() + 1e-25
-            && own.tail < Bound::exactly(1e-11) * own.norm()
+            && own.tail <= Bound::exactly(1e-11) * own.norm()
     }
 
     proptest! {

@@ -477,7 +477,7 @@ fn refused(error: ResponseError) -> Failure {
                 .to_owned(),
         ),
         ResponseError::NoMotion { .. } => {
-            Some("the motion escapes or never repeats itself there: try another range".to_owned())
+            Some("the motion escapes, never repeats itself, or swings too often in a period of the drive: try another range".to_owned())
         }
         _ => None,
     };

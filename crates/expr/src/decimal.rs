@@ -145,7 +145,7 @@ pub fn exact_decimal(value: &Rational) -> Option<String> {
     }
 }
 
-/// The same of any number of digits.
+/// Returns a fraction of any number of digits as a decimal in full, as [`exact_decimal`] does.
 fn long_decimal(value: &Rational) -> Option<String> {
     const MOST: usize = 40;
     let ten = Integer::from(10);

@@ -403,7 +403,7 @@ impl TrueFrequency {
         }
     }
 
-    /// The same truth over balls; `None` where it is no closer.
+    /// Returns this truth enclosed over balls; `None` if that has no value.
     fn of_balls(&self, certificate: &LawCertificate, supervision: Supervision) -> Option<&Self> {
         let enclosed = || Self::enclosed::<FourierSeries>(certificate, supervision).ok();
         match self.is_of_doubles {

@@ -65,8 +65,8 @@ pub fn simulate_primary(
     }
 }
 
-/// The same of several motions: phases that are integrated are so side by side, and each motion is bit for bit the
-/// same as alone.
+/// Follows several motions of a main mass: their integrated phases run side by side, and each motion is bit for bit
+/// that of [`simulate_primary`] alone.
 pub(super) fn simulate_primaries(
     motions: &[(PrimaryCase, PrimarySettings)],
 ) -> Vec<Result<PrimaryMotion, PrimaryError>> {

@@ -87,7 +87,7 @@ pub(super) struct TruthPiece {
 pub(super) struct PiecePolynomial {
     /// Its coefficients, the constant first.
     coefficients: Vec<Ball>,
-    /// Those of the same polynomial in Chebyshev's polynomials.
+    /// The coefficients of the polynomial in Chebyshev's polynomials.
     chebyshev: Vec<Ball>,
     /// Bound of the distance of the quantity from the polynomial.
     pub(super) remainder: Bound,
@@ -404,7 +404,8 @@ impl ForceOnRange {
         }
     }
 
-    /// The same in doubles, by Newton's iteration from that of another motion; `None` if it does not converge.
+    /// Finds the other turning point in doubles, by Newton's iteration from that of another motion; `None` if it does not
+    /// converge.
     fn turning_point_near(&self, place: &Ball, start: &Ball, near: Turns) -> Option<f64> {
         const STEPS: usize = 12;
         /// A step after which the next one would be one of rounding.

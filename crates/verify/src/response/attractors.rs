@@ -22,6 +22,7 @@ use super::driven::Driven;
 use super::jump::{StopCondition, follow};
 use super::seeds::{PlannedSimulation, Search, Seed, VALUES};
 use super::stability::{MotionGuess, SAMPLES, TOLERANCE, TrueMotion, options, periodic_motions};
+use super::unfollowed::MotionWithImages;
 use crate::system::LANES;
 
 /// Radii of the starts about the origin, relative to the largest motion.
@@ -94,6 +95,9 @@ impl PreparedRequest<'_> {
         /// motions that are on none, and the number of all.
         const ROUNDS: usize = 4;
         const MOST: usize = 48;
+        /// The part of the work of the branches that later searches take if no motions have shown small basins;
+        /// if some have, they take as much as the branches.
+        const PART: usize = 4;
         let mut intervals = self.intervals();
         let mut before = found.motions.seeds.len();
         self.search_round(balance, branches, &mut intervals, |_| true, 0, found);
@@ -102,8 +106,10 @@ impl PreparedRequest<'_> {
             let own = found.motions.seeds.iter().filter(|seed| seed.parameter == *value);
             let size = own.map(Seed::extent).fold(0.0, f64::max);
             let size = if size > 0.0 { size } else { found.size };
+            let size = self.sizes_of_starts(size)[0];
             self.search_around(&[(0, *value)], (0, 1), size, found);
         }
+        let mut spent_later = 0;
         for round in 1..MOST {
             let new = &found.motions.seeds[before..];
             let known = branches.len();
@@ -111,8 +117,12 @@ impl PreparedRequest<'_> {
                 *branches = self.branches_through(balance, new, found.size, branches);
             }
             let has_small_basins = !found.motions.elsewhere.is_empty();
-            let everywhere = round < ROUNDS && (branches.len() > known || has_small_basins);
-            let is_asked = |interval: &Interval| everywhere || interval.needs_more();
+            let is_early = round < self.sizes_of_starts(found.size).len()
+                || round < ROUNDS && (branches.len() > known || has_small_basins);
+            let part = if has_small_basins { 1 } else { PART };
+            let later = (self.work_of(balance, branches) / part).saturating_sub(spent_later);
+            let is_later = !is_early && later > 0;
+            let is_asked = |interval: &Interval| is_early || is_later || interval.needs_more();
             let is_over = found.is_spent() || self.question.interrupt.is_requested();
             if is_over || !intervals.iter().any(is_asked) {
                 return;
@@ -120,8 +130,28 @@ impl PreparedRequest<'_> {
             before = found.motions.seeds.len();
             let asked = intervals.iter().filter(|interval| is_asked(interval)).count();
             self.question.progress.begin(asked * RADII.len() * self.speeds_of_starts());
+            let rest = found.budget.evaluations;
+            if is_later {
+                found.budget.evaluations = later;
+            }
             self.search_round(balance, branches, &mut intervals, is_asked, round, found);
+            if is_later {
+                spent_later += later - found.budget.evaluations;
+                found.budget.evaluations = rest;
+            }
         }
+    }
+
+    /// About the number of evaluations of the force that take as long as these branches took.
+    fn work_of(&self, balance: &DrivenBalance, branches: &[BranchPath]) -> usize {
+        /// A point by shooting: a few periods with their variations.
+        const SHOT: usize = 3_000;
+        let points: usize = branches.iter().map(|path| path.nodes.len()).sum();
+        // A balance of n unknowns solves linear equations, n^3 operations, some times a point.
+        let balanced = (2 * balance.core.harmonics + 1).pow(3) / 4;
+        let work = points * if self.period_series.is_some() { SHOT } else { balanced };
+        // Side by side, simulations by series take an eighth of the time.
+        if self.driven.has_series() { work } else { work / 8 }
     }
 
     /// The intervals in which simulations begin from all around.
@@ -159,11 +189,15 @@ impl PreparedRequest<'_> {
         let values: Vec<f64> = asked.iter().map(|(_, value)| *value).collect();
         self.take_for_known(balance, branches, &values, found);
         let before = found.motions.elsewhere.len();
-        self.search_around(&asked, (round, intervals.len()), found.size, found);
+        let sizes = self.sizes_of_starts(found.size);
+        let size = sizes[round % sizes.len()];
+        self.search_around(&asked, (round, intervals.len()), size, found);
         let elsewhere = found.motions.elsewhere.split_off(before);
         for (index, value) in asked {
             let interval = &mut intervals[index];
-            interval.simulations += RADII.len() * self.speeds_of_starts();
+            if !found.is_spent() {
+                interval.simulations += RADII.len() * self.speeds_of_starts();
+            }
             let stable = found.stable_at(value).count();
             interval.stable = interval.stable.max(stable);
             for place in elsewhere.iter().filter(|place| place.parameter == value) {
@@ -221,20 +255,20 @@ impl PreparedRequest<'_> {
 
     /// The stable motions near the mirror images, half a period of the drive later, of those that are known, unless
     /// they are among them: a force that is nearly odd has two motions where an odd one has a motion and its image.
-    fn near_mirror_images(&self, known: &[(f64, TrueMotion)]) -> Vec<(f64, TrueMotion)> {
+    fn near_mirror_images(
+        &self,
+        known: &[(f64, TrueMotion)],
+        stable: &[MotionWithImages],
+    ) -> Vec<(f64, TrueMotion)> {
         let [low, high] = self.question.range;
         if self.is_odd(0.5 * (low + high)) {
             return vec![];
         }
-        let guess = |(parameter, motion): &(f64, TrueMotion)| {
-            let drive = self.driven.frequency_at(*parameter) * self.question.periods as f64;
-            let half = StopCondition::Time(0.5 * TAU / drive);
-            let settings = options(motion.peak, TOLERANCE);
-            let [x, v, ..] = follow(&self.driven, motion.start, *parameter, half, &settings)?.end;
-            Some(MotionGuess { start: [-x, -v], parameter: *parameter, size: motion.peak })
+        let guess = |motion: &MotionWithImages| {
+            let &MotionWithImages { parameter, size, .. } = motion;
+            Some(MotionGuess { start: *motion.starts.get(1)?, parameter, size })
         };
-        let stable = known.iter().filter(|(_, motion)| motion.floquet.largest() < 1.0);
-        let guesses: Vec<MotionGuess> = stable.filter_map(guess).collect();
+        let guesses: Vec<MotionGuess> = stable.iter().filter_map(guess).collect();
         let truths = periodic_motions(&self.driven, &guesses);
         let mut found: Vec<(f64, TrueMotion)> = vec![];
         for (guess, truth) in guesses.iter().zip(truths) {
@@ -272,8 +306,9 @@ impl PreparedRequest<'_> {
         found: &mut Search,
     ) {
         let [known, mut new] = self.motions_on(balance, branches, values);
-        new.extend(self.near_mirror_images(&known));
-        found.images = self.images_of(&known);
+        let stable = self.stable_with_images(&known);
+        new.extend(self.near_mirror_images(&known, &stable));
+        found.images = self.other_images(&stable).collect();
         found.known = known;
         let begin = |(parameter, motion): &(f64, TrueMotion)| PlannedSimulation {
             seed: None,
@@ -282,33 +317,67 @@ impl PreparedRequest<'_> {
         };
         let planned: Vec<PlannedSimulation> = new.iter().map(begin).collect();
         self.add_settled(&planned, found);
-        found.images.extend(self.images_of(&new));
+        found.images.extend(self.other_images(&self.stable_with_images(&new)));
         found.known.extend(new);
     }
 
-    /// The images of the stable ones of these motions, each with its value of the parameter: the same motions drive
-    /// periods later, and where the force is odd their mirror images. Simulations come to them as well.
-    fn images_of(&self, motions: &[(f64, TrueMotion)]) -> Vec<(f64, TrueMotion)> {
+    /// The stable ones of these motions, each with its images.
+    fn stable_with_images(&self, motions: &[(f64, TrueMotion)]) -> Vec<MotionWithImages> {
+        let stable = motions.iter().filter(|(_, motion)| motion.floquet.largest() < 1.0);
+        let guess = |&(parameter, motion): &(f64, TrueMotion)| MotionGuess {
+            start: motion.start,
+            parameter,
+            size: motion.peak,
+        };
+        let guesses: Vec<MotionGuess> = stable.map(guess).collect();
+        let all = self.images_together(&guesses).into_iter();
+        let with_images = |(starts, guess): (Vec<[f64; 2]>, &MotionGuess)| {
+            let &MotionGuess { parameter, size, .. } = guess;
+            MotionWithImages { parameter, starts, size }
+        };
+        all.zip(&guesses).map(with_images).collect()
+    }
+
+    /// The images of these motions that are motions as well: the same ones drive periods later, and where the force
+    /// is odd their mirror images. Simulations come to them, too.
+    fn other_images<'a>(
+        &self,
+        motions: &'a [MotionWithImages],
+    ) -> impl Iterator<Item = MotionGuess> + use<'a> {
         let [low, high] = self.question.range;
         let is_odd = self.is_odd(0.5 * (low + high));
-        if self.question.periods == 1 && !is_odd {
-            return vec![];
-        }
-        let stable = motions.iter().filter(|(_, motion)| motion.floquet.largest() < 1.0);
-        let images = stable.flat_map(|&(parameter, motion)| {
-            let starts = self.images(motion.start, parameter, motion.peak);
+        motions.iter().flat_map(move |motion| {
+            let &MotionWithImages { parameter, size, .. } = motion;
             // Every other one is half a drive period later, and mirrored.
-            let starts = starts.into_iter().enumerate().skip(1);
-            let own = starts.filter(|(halves, _)| is_odd || halves.is_multiple_of(2));
-            own.map(move |(_, start)| (parameter, TrueMotion { start, ..motion }))
-        });
-        images.collect()
+            let starts = motion.starts.iter().enumerate().skip(1);
+            let own = starts.filter(move |(halves, _)| is_odd || halves.is_multiple_of(2));
+            own.map(move |(_, start)| MotionGuess { start: *start, parameter, size })
+        })
     }
 
     /// The number of speeds that starts all around have at each place: that of the drive, and for motions
     /// of several periods, which swing with a frequency of their own, that of a free swing.
     fn speeds_of_starts(&self) -> usize {
         self.question.periods.min(2)
+    }
+
+    /// The sizes of starts in turn, from that of the largest motion that is known: where it is smaller than
+    /// nonlinear motions are, theirs as well.
+    fn sizes_of_starts(&self, size: f64) -> Vec<f64> {
+        /// Part of the size of nonlinear motions below which the known ones are hardly more than rest, and
+        /// multiple of it that starts reach.
+        const SMALL: f64 = 0.01;
+        const REACH: f64 = 2.0;
+        let [low, high] = self.question.range;
+        let values = [low, 0.5 * (low + high), high];
+        let nonlinear = values.map(|at| nonlinear_size(&self.driven, at));
+        let nonlinear = nonlinear.into_iter().fold(0.0, f64::max);
+        let size = if size > SMALL * nonlinear { size } else { nonlinear };
+        // A motion over a hilltop of the potential is larger than all that stay in a well.
+        let rests = values.map(|at| farthest_rest(&self.driven, at, size));
+        let size = rests.into_iter().fold(size, f64::max);
+        let larger = Some(REACH * nonlinear).filter(|larger| *larger > size);
+        std::iter::once(size).chain(larger).collect()
     }
 
     /// Adds the motions on which simulations settle from places all around in the plane of position
@@ -323,16 +392,6 @@ impl PreparedRequest<'_> {
         /// Parts of a turn from one value to the next, which leave no direction out, from one radius to the
         /// other, and from one speed to the other.
         const TURNS: [f64; 3] = [GOLDEN, 0.5, 0.25];
-        /// Part of the size of nonlinear motions below which the known ones are hardly more than rest.
-        const SMALL: f64 = 0.01;
-        let [low, high] = self.question.range;
-        let values_of_size = [low, 0.5 * (low + high), high];
-        let nonlinear = values_of_size.map(|at| nonlinear_size(&self.driven, at));
-        let nonlinear = nonlinear.into_iter().fold(0.0, f64::max);
-        let size = if size > SMALL * nonlinear { size } else { nonlinear };
-        // A motion over a hilltop of the potential is larger than all that stay in a well.
-        let rests = values_of_size.map(|at| farthest_rest(&self.driven, at, size));
-        let size = rests.into_iter().fold(size, f64::max);
         let around = |&(index, parameter): &(usize, f64)| {
             let omega = self.driven.frequency_at(parameter) * self.question.periods as f64;
             let places = (0..self.speeds_of_starts())

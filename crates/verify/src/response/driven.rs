@@ -13,7 +13,7 @@
 use num_integer::Integer as _;
 use num_traits::{Signed, Zero};
 
-use super::series::{PhaseEquations, solver_in_time};
+use super::series::{PhaseEquations, SETTLING_TOLERANCE, TOLERANCE, solver_in_time};
 use super::{MOST_HARMONICS, ResponseError};
 use crate::exact::Rational;
 use crate::exact::rational::to_f64;
@@ -44,6 +44,8 @@ pub struct Driven {
     /// The motion, and the motion with its variations, as Taylor series; `None` if there is a jump
     /// or no series.
     series: [Option<Solver>; 2],
+    /// The motion as Taylor series of fewer orders, for simulations that are to settle.
+    short_series: Option<Solver>,
     /// The motion as first-order equations in its phase.
     pub(super) in_phase: PhaseEquations,
     /// omega(p) and its derivative.
@@ -333,9 +335,13 @@ impl Driven {
                 })
                 .collect::<Result<_, _>>()?,
             series: match lines_are_empty {
-                true => [false, true].map(|varied| solver_in_time(oscillator, parameter, varied)),
+                true => [false, true]
+                    .map(|varied| solver_in_time(oscillator, parameter, varied, TOLERANCE)),
                 false => [None, None],
             },
+            short_series: lines_are_empty
+                .then(|| solver_in_time(oscillator, parameter, false, SETTLING_TOLERANCE))
+                .flatten(),
             in_time: CompiledFunction::new(
                 &oscillator.force,
                 &[position, velocity, time, parameter],
@@ -513,6 +519,12 @@ impl Driven {
     /// way.
     pub fn by_series(&self, motions: &[TimedStart]) -> Vec<Option<Path>> {
         self.paths(&self.series[0], motions, |start| start.to_vec())
+    }
+
+    /// Follows motions side by side as [`Self::by_series`] does, to the accuracy that simulations need
+    /// which are to settle, for less than half of the work.
+    pub(super) fn by_short_series(&self, motions: &[TimedStart]) -> Vec<Option<Path>> {
+        self.paths(&self.short_series, motions, |start| start.to_vec())
     }
 
     /// Follows motions with their variations side by side, whose states are position, velocity and

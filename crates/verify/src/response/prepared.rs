@@ -99,7 +99,7 @@ impl<'a> PreparedRequest<'a> {
 
     /// The response by shooting: harmonics are only output.
     pub(super) fn shot_response(&self) -> Result<ResponseDiagram, ResponseError> {
-        let InitialMotions { seeds, elsewhere, branches, gaps } = self.seeds(MOST_HARMONICS)?;
+        let InitialMotions { seeds, elsewhere, branches, gaps, .. } = self.seeds(MOST_HARMONICS)?;
         let mut response = self.attempt(MOST_HARMONICS, &seeds, &branches)?.with_sparse(gaps);
         response.elsewhere.extend(elsewhere);
         Elsewhere::sort(&mut response.elsewhere);
@@ -116,8 +116,8 @@ impl<'a> PreparedRequest<'a> {
             true => FIRST,
             false => MOST_HARMONICS,
         };
-        let first = self.question.harmonics.unwrap_or(automatic);
-        let InitialMotions { seeds, elsewhere, branches, gaps } = self.seeds(first)?;
+        let found = self.seeds(self.question.harmonics.unwrap_or(automatic))?;
+        let InitialMotions { seeds, elsewhere, branches, harmonics: first, gaps } = found;
         let mut harmonics = first;
         let mut before = (f64::INFINITY, usize::MAX);
         let mut fewer: Option<ResponseDiagram> = None;

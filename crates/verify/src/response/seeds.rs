@@ -13,7 +13,7 @@ use super::stability::{
     MotionGuess, Settled, SettlingStart, SimulationBudget, TrueMotion, first_harmonic,
     half_of_peak_to_peak, periodic_motions, settle_together,
 };
-use super::{Elsewhere, PreparedRequest, ResponseError};
+use super::{Elsewhere, MOST_HARMONICS, PreparedRequest, ResponseError};
 use super::{melnikov, one_harmonic};
 use crate::system::LANES;
 
@@ -40,6 +40,8 @@ pub(super) struct InitialMotions {
     pub(super) elsewhere: Vec<Elsewhere>,
     /// The branches that were followed on the way.
     pub(super) branches: Vec<BranchPath>,
+    /// The number of harmonics of these branches.
+    pub(super) harmonics: usize,
     /// The stretches of the range in which the values of the search are far apart.
     pub(super) gaps: Vec<[f64; 2]>,
 }
@@ -63,7 +65,11 @@ impl PreparedRequest<'_> {
     /// not become periodic.
     pub(super) fn seeds(&self, harmonics: usize) -> Result<InitialMotions, ResponseError> {
         if self.driven.self_excited {
-            return Ok(InitialMotions { seeds: self.cycles()?, ..InitialMotions::default() });
+            return Ok(InitialMotions {
+                seeds: self.cycles()?,
+                harmonics,
+                ..InitialMotions::default()
+            });
         }
         let balance = DrivenBalance::new(&self.driven, harmonics);
         let values = self.values_of_search();
@@ -81,6 +87,8 @@ impl PreparedRequest<'_> {
         let known = self.search_from_rest(&balance, &values, &mut found);
         self.search_from_guesses(&balance, (&values, &added), known, &mut found);
         let seeds = &mut found.motions.seeds;
+        let balance = self.balance_for(seeds, harmonics);
+        found.motions.harmonics = balance.core.harmonics;
         found.size = found.size.max(size_of(seeds));
         let mut branches = self.branches_through(&balance, seeds, found.size, &[]);
         for path in &branches {
@@ -100,6 +108,31 @@ impl PreparedRequest<'_> {
             true => Err(self.no_motion_error()),
             false => Ok(found.motions),
         }
+    }
+
+    /// A balance of at least so many harmonics that sums of them come near the motions that simulations have
+    /// found: with fewer there are branches of other motions, which would be followed anew.
+    fn balance_for(&self, seeds: &[Seed], harmonics: usize) -> DrivenBalance<'_> {
+        /// The distance of a sum from the motion, in parts of its size, up to which it comes near.
+        const NEAR: f64 = 0.1;
+        let mut balance = DrivenBalance::new(&self.driven, harmonics);
+        let is_far = |balance: &DrivenBalance, seed: &Seed| {
+            let Some([end, speed]) = seed.start else { return false };
+            let near = NEAR * seed.extent();
+            let [x, v] = self.begins(balance, seed);
+            // A motion that still decays is no sum of harmonics.
+            let repeats =
+                seed.positions.first().is_some_and(|begin| (end - begin).abs() <= NEAR * near);
+            repeats && (x - end).hypot((v - speed) / seed.frequency) > near
+        };
+        let may_have_more = self.question.harmonics.is_none() && self.period_series.is_none();
+        while may_have_more
+            && 2 * balance.core.harmonics <= MOST_HARMONICS
+            && seeds.iter().any(|seed| is_far(&balance, seed))
+        {
+            balance = DrivenBalance::new(&self.driven, 2 * balance.core.harmonics);
+        }
+        balance
     }
 
     /// The distances between the values of the parameter at which the search begins.
@@ -433,13 +466,13 @@ pub(super) struct Search {
     /// The result so far.
     pub(super) motions: InitialMotions,
     /// The evaluations that are left for simulations.
-    budget: SimulationBudget,
+    pub(super) budget: SimulationBudget,
     /// The size of the largest motion.
     pub(super) size: f64,
     /// Motions of the first branches, each with its value of the parameter.
     pub(super) known: Vec<(f64, TrueMotion)>,
     /// Images of the stable ones of them.
-    pub(super) images: Vec<(f64, TrueMotion)>,
+    pub(super) images: Vec<MotionGuess>,
     /// Guesses of motions that simulations that do not become periodic surround.
     pub(super) returns: Vec<MotionGuess>,
 }
@@ -456,10 +489,15 @@ impl Search {
         self.budget.evaluations == 0
     }
 
-    /// The stable motions that are known at a value of the parameter, and their images.
-    fn places_at(&self, parameter: f64) -> impl Iterator<Item = TrueMotion> {
-        let images = self.images.iter().filter(move |(value, _)| *value == parameter);
-        self.stable_at(parameter).chain(images.map(|(_, motion)| *motion))
+    /// The starts of stable motions that are known at a value of the parameter, and of their images.
+    fn places_at(&self, parameter: f64) -> impl Iterator<Item = MotionGuess> {
+        let place = move |motion: TrueMotion| MotionGuess {
+            start: motion.start,
+            parameter,
+            size: motion.peak,
+        };
+        let images = self.images.iter().filter(move |image| image.parameter == parameter);
+        self.stable_at(parameter).map(place).chain(images.copied())
     }
 }
 

@@ -27,15 +27,22 @@ use crate::oscillator::Oscillator;
 use crate::symbol::Symbol;
 use crate::system::{Event, Path, PathEnd, Solver, System, SystemOptions, Variations};
 
+/// Relative error of a step, below any that a judge asks for.
+pub(super) const TOLERANCE: f64 = 1e-13;
+
+/// Relative error of a step of a simulation that is to settle, below the distance at which it has.
+pub(super) const SETTLING_TOLERANCE: f64 = 1e-8;
+
 /// A value of the parameter with which nothing cancels; every motion has its own.
 pub(super) const ANY: f64 = 0.618_034;
 
-/// Prepares the Taylor series in time of a motion, or of the motion with its variations; `None` if
-/// it has none.
+/// Prepares the Taylor series in time of a motion, or of the motion with its variations, to a tolerance;
+/// `None` if it has none.
 pub(super) fn solver_in_time(
     oscillator: &Oscillator,
     parameter: Symbol,
     varied: bool,
+    tolerance: f64,
 ) -> Option<Solver> {
     let states = [oscillator.coordinate, oscillator.velocity()];
     let right = [Expr::from(states[1]), -&oscillator.force];
@@ -47,7 +54,7 @@ pub(super) fn solver_in_time(
         }
         false => Variations { states: states.to_vec(), right: right.to_vec() },
     };
-    solver(&states, time, &right, (parameter, ANY))
+    solver_until(&states, time, &right, (parameter, ANY), (tolerance, &[]))
 }
 
 /// Prepares the Taylor series in time of a motion that ends where its velocity falls through zero;
@@ -56,7 +63,7 @@ pub(super) fn swing_solver(oscillator: &Oscillator, parameter: (Symbol, f64)) ->
     let states = [oscillator.coordinate, oscillator.velocity()];
     let right = [Expr::from(states[1]), -&oscillator.force];
     let turns = Event::stop(Expr::from(states[1])).falling();
-    solver_until(&states, Symbol::new("t"), &right, parameter, &[turns])
+    solver_until(&states, Symbol::new("t"), &right, parameter, (TOLERANCE, &[turns]))
 }
 
 /// Prepares the Taylor series of a system with a parameter.
@@ -66,23 +73,20 @@ fn solver(
     right: &[Expr],
     parameter: (Symbol, f64),
 ) -> Option<Solver> {
-    solver_until(states, time, right, parameter, &[])
+    solver_until(states, time, right, parameter, (TOLERANCE, &[]))
 }
 
-/// Prepares the Taylor series of a system with a parameter and events.
+/// Prepares the Taylor series of a system with a parameter, to a tolerance and with events.
 fn solver_until(
     states: &[Symbol],
     time: Symbol,
     right: &[Expr],
     parameter: (Symbol, f64),
-    events: &[Event],
+    (tolerance, events): (f64, &[Event]),
 ) -> Option<Solver> {
-    /// Relative error of a step, below any that a judge asks for.
-    const TOLERANCE: f64 = 1e-13;
     const STEPS: usize = 4_000;
     let system = System::new(states, time, right, &[parameter].into()).ok()?;
-    let options =
-        SystemOptions { tolerance: TOLERANCE, step_limit: STEPS, ..SystemOptions::default() };
+    let options = SystemOptions { tolerance, step_limit: STEPS, ..SystemOptions::default() };
     Some(system.solver(events, &options))
 }
 

@@ -472,9 +472,9 @@ pub struct SettlingStart {
     pub parameter: f64,
     /// The largest number of periods.
     pub most: usize,
-    /// Stable motions that are known at this value of the parameter: a simulation that comes close to
-    /// one of them ends.
-    pub known: Vec<TrueMotion>,
+    /// Starts of stable motions that are known at this value of the parameter: a simulation that comes close
+    /// to one of them ends.
+    pub known: Vec<MotionGuess>,
 }
 
 /// Follows the equation as it was given from several starts, period by period, each until it repeats
@@ -498,7 +498,7 @@ pub fn settle_together(
         while !going.is_empty() {
             let motions: Vec<TimedStart> =
                 going.iter().map(|index| runs[*index].next_period(driven)).collect();
-            let mut paths = driven.by_series(&motions).into_iter();
+            let mut paths = driven.by_short_series(&motions).into_iter();
             going.retain(|&index| {
                 let path = paths.next().flatten().map(Period::Series);
                 runs[index].advance(driven, path, closely, budget)
@@ -521,7 +521,7 @@ const LONGEST: usize = 8;
 /// A simulation in progress.
 struct Settling {
     parameter: f64,
-    known: Vec<TrueMotion>,
+    known: Vec<MotionGuess>,
     /// The number of periods that are left.
     left: usize,
     /// The states at the beginning of each period.
@@ -565,7 +565,7 @@ impl Settling {
     ) -> bool {
         self.last = if self.left == 0 { None } else { self.taken(driven, series, closely, budget) };
         self.left = self.left.saturating_sub(1);
-        if self.comes_to_known() {
+        if self.comes_to_known(driven.frequency_at(self.parameter)) {
             self.last = None;
         }
         self.last.is_some() && self.quiet < 3 && !self.repeats && self.left > 0
@@ -573,7 +573,7 @@ impl Settling {
 
     /// Whether the last three states come nearer and nearer to a stable motion that is known, and are
     /// close to it.
-    fn comes_to_known(&self) -> bool {
+    fn comes_to_known(&self, omega: f64) -> bool {
         /// Ratio of the distance to the size of the motion, and to that of the start, if the motion is rest.
         const CLOSE: f64 = 1e-2;
         const CLOSE_TO_REST: f64 = 1e-4;
@@ -581,9 +581,9 @@ impl Settling {
         self.known.iter().any(|motion| {
             let distance = |state: &[f64; 2]| {
                 let [x, v] = motion.start;
-                (state[0] - x).hypot((state[1] - v) / motion.frequency)
+                (state[0] - x).hypot((state[1] - v) / omega)
             };
-            let close = (CLOSE * motion.peak).max(CLOSE_TO_REST * distance(first));
+            let close = (CLOSE * motion.size).max(CLOSE_TO_REST * distance(first));
             let [one, two, three] = [one, two, three].map(distance);
             one > two && two > three && three <= close
         })

@@ -22,7 +22,8 @@ use super::continuation::{BranchEnd, BranchNode, BranchPath};
 use super::jump::{StopCondition, VariationalMotion, follow};
 use super::seeds::{Seed, size_of};
 use super::stability::{
-    Floquet, SAMPLES, TOLERANCE, TrueMotion, convergence_test, half_of_peak_to_peak, options,
+    Floquet, MotionGuess, SAMPLES, TOLERANCE, TrueMotion, convergence_test, half_of_peak_to_peak,
+    options,
 };
 use super::{LONGEST_STEP, MOST_BRANCHES, PreparedRequest};
 use crate::numeric::continuation::ContinuationStep::{Ended, Taken, TooLong};
@@ -547,7 +548,7 @@ impl PreparedRequest<'_> {
         let size = balance.core.extent(&node.coefficients);
         let images = match self.driven.self_excited {
             true => vec![start],
-            false => self.images(start, node.parameter, size),
+            false => self.images(MotionGuess { start, parameter: node.parameter, size }),
         };
         let on = |start: [f64; 2]| {
             paths.iter().position(|path| self.lies_on(balance, path, start, node.parameter, size))

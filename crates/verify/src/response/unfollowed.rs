@@ -15,13 +15,14 @@ use super::stability::{
     periodic_motion, periodic_motions,
 };
 use super::{Elsewhere, LONGEST_STEP, PreparedRequest};
+use crate::system::Path;
 
 /// A motion at a value of the parameter, by its start and those of its images, shifted by a drive
 /// period or mirrored.
-struct MotionWithImages {
-    parameter: f64,
-    starts: Vec<[f64; 2]>,
-    size: f64,
+pub(super) struct MotionWithImages {
+    pub(super) parameter: f64,
+    pub(super) starts: Vec<[f64; 2]>,
+    pub(super) size: f64,
 }
 
 impl PreparedRequest<'_> {
@@ -66,7 +67,7 @@ impl PreparedRequest<'_> {
             }
             let motion = MotionWithImages {
                 parameter,
-                starts: self.images(start, parameter, extent),
+                starts: self.images(MotionGuess { start, parameter, size: extent }),
                 size: extent,
             };
             if !paths.iter().any(|path| self.passes(balance, path, &motion)) {
@@ -159,19 +160,40 @@ impl PreparedRequest<'_> {
         Elsewhere::sort(elsewhere);
     }
 
-    /// The starts of a motion, of its shifts by drive periods, and of their mirror images.
-    pub(super) fn images(&self, start: [f64; 2], parameter: f64, size: f64) -> Vec<[f64; 2]> {
-        let period = std::f64::consts::TAU
-            / self.driven.frequency_at(parameter)
-            / self.question.periods as f64;
-        let settings = options(size, TOLERANCE);
-        let after = |halves: usize| {
-            let time = StopCondition::Time(0.5 * halves as f64 * period);
-            let [x, v, ..] = follow(&self.driven, start, parameter, time, &settings)?.end;
-            Some(if halves % 2 == 1 { [-x, -v] } else { [x, v] })
+    /// The starts of a motion, of its shifts by drive periods, and of their mirror images, a half of a drive period
+    /// after each other.
+    pub(super) fn images(&self, motion: MotionGuess) -> Vec<[f64; 2]> {
+        self.images_together(&[motion]).pop().unwrap_or_default()
+    }
+
+    /// The [images](Self::images) of several motions, which are followed over a period side by side.
+    pub(super) fn images_together(&self, motions: &[MotionGuess]) -> Vec<Vec<[f64; 2]>> {
+        let period = |motion: &MotionGuess| {
+            std::f64::consts::TAU / self.driven.frequency_at(motion.parameter)
         };
-        let later = (1..2 * self.question.periods).filter_map(after);
-        std::iter::once(start).chain(later).collect()
+        let whole = |motion: &MotionGuess| {
+            let &MotionGuess { start, parameter, .. } = motion;
+            TimedStart { start, begin: 0.0, parameter, duration: period(motion) }
+        };
+        let halves = 2 * self.question.periods;
+        let images = |(path, motion): (Option<Path>, &MotionGuess)| {
+            let state = |time: f64| -> Option<[f64; 2]> {
+                if let Some(path) = &path {
+                    return path.states_at(time.min(path.end()))?.try_into().ok();
+                }
+                let settings = options(motion.size, TOLERANCE);
+                let until = StopCondition::Time(time);
+                let path = follow(&self.driven, motion.start, motion.parameter, until, &settings)?;
+                Some([path.end[0], path.end[1]])
+            };
+            let after = |half: usize| {
+                let [x, v] = state(period(motion) * half as f64 / halves as f64)?;
+                Some(if half % 2 == 1 { [-x, -v] } else { [x, v] })
+            };
+            std::iter::once(motion.start).chain((1..halves).filter_map(after)).collect()
+        };
+        let starts: Vec<TimedStart> = motions.iter().map(whole).collect();
+        self.driven.by_short_series(&starts).into_iter().zip(motions).map(images).collect()
     }
 
     /// Whether a start is that of this motion or of an image of it, up to a period of the force in

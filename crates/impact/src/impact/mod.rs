@@ -115,6 +115,7 @@ pub use error::ImpactError;
 pub use form::{Form, TimeFunction};
 pub use judge::{Deviation, TrueImpact, assured_impact, deviation, true_impact};
 pub use linearisation::{LinearContactForce, LinearisationError, Rule, UnknownRule, fit};
+pub(crate) use materials::impacts_until;
 pub use materials::{
     DEFAULT_DURATION, DEFAULT_MATERIALS, DEFAULT_ZETA, FirstContact, HeldFixed, Material,
     MaterialMotions, MaterialQuestion, MaterialRow, MaterialStudy, MaterialsError, MotionToRest,

@@ -148,40 +148,49 @@ pub fn simulate_many(
     integrator: Integrator,
     settings: &Settings,
 ) -> Result<Vec<Simulation>, (usize, SimulationError)> {
-    let numbered = simulate_each(motions, integrator, settings).into_iter().enumerate();
+    let mut results: Vec<Option<Result<Simulation, SimulationError>>> =
+        motions.iter().map(|_| None).collect();
+    simulate_each(motions, integrator, settings, &mut |number, motion| {
+        results[number] = Some(motion);
+    });
+    let numbered = results.into_iter().flatten().enumerate();
     numbered.map(|(number, motion)| motion.map_err(|error| (number, error))).collect()
 }
 
-/// [`simulate_many`], with the errors of all.
+/// [`simulate_many`], each passed on with its number as it ends, or cannot begin: what is kept of it
+/// may be less than the whole.
 pub(crate) fn simulate_each(
     motions: &[(Model, Start)],
     integrator: Integrator,
     settings: &Settings,
-) -> Vec<Result<Simulation, SimulationError>> {
-    let checked = |(model, start): &(Model, Start)| check(model, *start, settings);
-    let mut results: Vec<Option<Result<Simulation, SimulationError>>> =
-        motions.iter().map(|motion| checked(motion).err().map(Err)).collect();
-    let begins: Vec<usize> = (0..motions.len()).filter(|index| results[*index].is_none()).collect();
-    let motions: Vec<(Model, Start)> = begins.iter().map(|index| motions[*index]).collect();
-    let mut done = |number: usize, motion| results[begins[number]] = Some(motion);
+    done: &mut dyn FnMut(usize, Result<Simulation, SimulationError>),
+) {
+    let mut begins: Vec<usize> = Vec::with_capacity(motions.len());
+    for (number, (model, start)) in motions.iter().enumerate() {
+        match check(model, *start, settings) {
+            Ok(()) => begins.push(number),
+            Err(error) => done(number, Err(error)),
+        }
+    }
+    let begun = begins.iter().map(|number| (*number, motions[*number]));
     match integrator {
         Integrator::Taylor => {
             let runs =
-                motions.iter().map(|(model, start)| taylor::Runner::new(*model, *start, *settings));
+                begun.map(|(_, (model, start))| taylor::Runner::new(model, start, *settings));
             taylor::follow(runs, |number, runner| {
+                let number = begins[number];
                 done(number, Ok(runner.finish(motions[number].1)));
             });
         }
-        Integrator::Chain => chains(&motions, settings, |number, motion| {
+        Integrator::Chain => chains(begun, settings, &mut |number, motion| {
             done(number, motion.map_err(SimulationError::from));
         }),
         Integrator::RungeKutta => {
-            for (number, (model, start)) in motions.iter().enumerate() {
-                done(number, judge::follow(model, *start, settings).map_err(SimulationError::from));
+            for (number, (model, start)) in begun {
+                done(number, judge::follow(&model, start, settings).map_err(SimulationError::from));
             }
         }
     }
-    results.into_iter().flatten().collect()
 }
 
 fn check(model: &Model, start: Start, settings: &Settings) -> Result<(), SimulationError> {

@@ -8,8 +8,8 @@ use super::question::OptimizationProblem;
 use crate::impact::contact::hunt_crossley::{peak_force, restitution};
 use crate::impact::primary::{MainMass, PrimaryError, PrimarySettings, simulate_primary};
 use crate::impact::{
-    Case, ContactRecord, Integrator, Model, MotionToRest, NoRest, Parameter, Settings, Simulation,
-    SimulationError, Start, Units, hertz, simulate, simulate_each,
+    Case, ContactRecord, Integrator, Model, NoRest, Parameter, Settings, Simulation,
+    SimulationError, Start, Units, hertz, impacts_until, simulate, simulate_each,
 };
 
 /// The way in which a design is evaluated.
@@ -127,33 +127,45 @@ impl OptimizationProblem {
         contact: bool,
     ) -> Result<EvaluatedDesign, String> {
         match route {
-            Route::Integration => self.follow_motion(point, route, None, contact),
+            Route::Integration => self.design_motion(point, route, contact)?.followed(None),
             Route::Chain => {
-                let mut all = self.follow_by_chain(&[point.to_vec()], contact);
+                let mut all = self.follow_by_chain(&[point.to_vec()], contact, |design| design);
                 all.pop().unwrap_or_else(|| Err("no design".to_owned()))
             }
         }
     }
 
     /// Follows designs by the chain of closed forms, several side by side; those without one are
-    /// integrated.
-    pub(super) fn follow_by_chain(
+    /// integrated. `keep` takes what is wanted of each as it ends, so that no more
+    /// motions are in memory than are followed at once.
+    pub(super) fn follow_by_chain<T>(
         &self,
         points: &[Vec<f64>],
         contact: bool,
-    ) -> Vec<Result<EvaluatedDesign, String>> {
-        let motions: Vec<Option<(Model, Start)>> = match self.main_mass {
-            Some(_) => vec![None; points.len()],
-            None => points.iter().map(|point| self.motion_of(point)).collect(),
-        };
-        let begun: Vec<(Model, Start)> = motions.iter().flatten().copied().collect();
-        let mut chains =
-            simulate_each(&begun, Integrator::Chain, &self.settings_to_rest()).into_iter();
-        let follow = |(point, motion): (&Vec<f64>, Option<(Model, Start)>)| {
-            let chain = motion.and_then(|_| chains.next());
-            self.follow_motion(point, Route::Chain, chain, contact)
-        };
-        points.iter().zip(motions).map(follow).collect()
+        keep: impl Fn(Result<EvaluatedDesign, String>) -> T,
+    ) -> Vec<T> {
+        let prepared: Vec<Result<DesignMotion, String>> =
+            points.iter().map(|point| self.design_motion(point, Route::Chain, contact)).collect();
+        let mut kept: Vec<Option<T>> = points.iter().map(|_| None).collect();
+        let (mut numbers, mut begun) = (vec![], vec![]);
+        for (number, motion) in prepared.iter().enumerate() {
+            match motion {
+                Ok(motion) if self.main_mass.is_none() => {
+                    numbers.push(number);
+                    begun.push((motion.model, motion.start));
+                }
+                Ok(motion) => kept[number] = Some(keep(motion.followed(None))),
+                Err(error) => kept[number] = Some(keep(Err(error.clone()))),
+            }
+        }
+        let settings = self.settings_to_rest();
+        simulate_each(&begun, Integrator::Chain, &settings, &mut |index, chain| {
+            let number = numbers[index];
+            if let Ok(motion) = &prepared[number] {
+                kept[number] = Some(keep(motion.followed(Some(chain))));
+            }
+        });
+        kept.into_iter().flatten().collect()
     }
 
     /// The settings of a motion that is followed until it rests.
@@ -161,14 +173,16 @@ impl OptimizationProblem {
         Settings { stop_at_rest: true, keep_path: false, ..self.settings }
     }
 
-    /// Follows a design by integration, unless its chain is given.
-    fn follow_motion(
-        &self,
-        point: &[f64],
+    /// The motion of a design.
+    ///
+    /// # Errors
+    /// [`Case::motion`] in words.
+    fn design_motion<'a>(
+        &'a self,
+        point: &'a [f64],
         route: Route,
-        chain: Option<Result<Simulation, SimulationError>>,
         contact: bool,
-    ) -> Result<EvaluatedDesign, String> {
+    ) -> Result<DesignMotion<'a>, String> {
         let (case, material) = self.case_of(point);
         let (model, start) = case.motion().map_err(|error| error.to_string())?;
         let units = Units {
@@ -180,22 +194,16 @@ impl OptimizationProblem {
             sphere_yield: self.sphere_yield,
             barrier_yield: None,
         };
-        let motion = DesignMotion { question: self, model, start, units, route, contact };
-        let followed = match self.main_mass {
-            Some(main_mass) => motion.on_main_mass(&main_mass)?,
-            None => motion.on_fixed_pivot(chain).map_err(|error| error.to_string())?,
-        };
-        Ok(EvaluatedDesign {
-            point: point.to_vec(),
+        Ok(DesignMotion {
+            question: self,
+            point,
             material,
             case,
             model,
+            start,
             units,
-            rest_time: followed.rest_time,
-            impacts: followed.impacts,
-            hardest: followed.hardest,
-            primary_rest_time: followed.primary_rest_time,
-            integrated: followed.integrated,
+            route,
+            contact,
         })
     }
 
@@ -219,6 +227,9 @@ impl OptimizationProblem {
 /// The motion of a design that is to be followed.
 struct DesignMotion<'a> {
     question: &'a OptimizationProblem,
+    point: &'a [f64],
+    material: Option<usize>,
+    case: Case,
     model: Model,
     start: Start,
     units: Units,
@@ -236,33 +247,59 @@ struct SimulatedMotion {
 }
 
 impl DesignMotion<'_> {
+    /// Follows the design by integration, unless its chain is given.
+    ///
+    /// # Errors
+    /// As [`simulate`](crate::impact::simulate()), in words.
+    fn followed(
+        &self,
+        chain: Option<Result<Simulation, SimulationError>>,
+    ) -> Result<EvaluatedDesign, String> {
+        let followed = match self.question.main_mass {
+            Some(main_mass) => self.on_main_mass(&main_mass)?,
+            None => self.on_fixed_pivot(chain).map_err(|error| error.to_string())?,
+        };
+        Ok(EvaluatedDesign {
+            point: self.point.to_vec(),
+            material: self.material,
+            case: self.case,
+            model: self.model,
+            units: self.units,
+            rest_time: followed.rest_time,
+            impacts: followed.impacts,
+            hardest: followed.hardest,
+            primary_rest_time: followed.primary_rest_time,
+            integrated: followed.integrated,
+        })
+    }
+
     /// The pendulum alone, by its chain if there is one.
     fn on_fixed_pivot(
         &self,
         chain: Option<Result<Simulation, SimulationError>>,
     ) -> Result<SimulatedMotion, SimulationError> {
-        let settings = self.question.settings_to_rest();
         let by_chain = match chain {
             None | Some(Err(SimulationError::Chain(_))) => None,
-            Some(found) => Some(MotionToRest::from(&found?)),
+            Some(found) => Some(found?),
         };
         let integrated = by_chain.is_none();
-        let (course, hardest) = match by_chain {
-            Some(course) => {
-                let hardest = self.contact.then(|| self.fastest_in_closed_form(&course));
-                (course, hardest)
-            }
+        let motion = match by_chain {
+            Some(motion) => motion,
             None => {
-                let settings = Settings { keep_path: self.contact, ..settings };
-                let motion = simulate(&self.model, self.start, Integrator::Taylor, &settings)?;
-                let course = MotionToRest::from(&motion);
-                let hardest = self.contact.then(|| self.hardest_of_motion(&motion, &course));
-                (course, hardest)
+                let settings =
+                    Settings { keep_path: self.contact, ..self.question.settings_to_rest() };
+                simulate(&self.model, self.start, Integrator::Taylor, &settings)?
             }
         };
+        let rest_time = motion.rest().time;
+        let until_rest = || impacts_until(&motion.impacts, rest_time);
+        let hardest = self.contact.then(|| match integrated {
+            false => self.fastest_in_closed_form(until_rest()),
+            true => self.hardest_of_motion(&motion, until_rest()),
+        });
         Ok(SimulatedMotion {
-            rest_time: course.rest_time,
-            impacts: course.impacts.len(),
+            rest_time,
+            impacts: until_rest().count(),
             hardest: hardest.flatten(),
             primary_rest_time: None,
             integrated,
@@ -277,28 +314,30 @@ impl DesignMotion<'_> {
     }
 
     /// The contact that is touched fastest, in closed form.
-    fn fastest_in_closed_form(&self, course: &MotionToRest) -> Option<HardestContact> {
+    fn fastest_in_closed_form<'a>(
+        &self,
+        impacts: impl Iterator<Item = &'a ContactRecord>,
+    ) -> Option<HardestContact> {
         let faster =
             |one: &&ContactRecord, other: &&ContactRecord| one.speed_in.total_cmp(&other.speed_in);
-        let fastest = course.impacts.iter().max_by(faster)?;
+        let fastest = impacts.max_by(faster)?;
         let contacts = self.in_closed_form(fastest).into_iter();
         HardestContact::from_contacts(&self.model, &self.units, contacts)
     }
 
     /// The hardest contact of a motion that was integrated. For one too short for the clock the
     /// force is that of the closed form, because the forces of the swing are negligible then.
-    fn hardest_of_motion(
+    fn hardest_of_motion<'a>(
         &self,
         motion: &Simulation,
-        course: &MotionToRest,
+        impacts: impl Iterator<Item = &'a ContactRecord>,
     ) -> Option<HardestContact> {
-        let contacts =
-            course.impacts.iter().filter_map(|contact| match motion.peak_force(contact) {
-                Some(force) => Some((force, contact.penetration, contact.restitution)),
-                None => self
-                    .in_closed_form(contact)
-                    .map(|(force, depth, _)| (force, depth, contact.restitution)),
-            });
+        let contacts = impacts.filter_map(|contact| match motion.peak_force(contact) {
+            Some(force) => Some((force, contact.penetration, contact.restitution)),
+            None => self
+                .in_closed_form(contact)
+                .map(|(force, depth, _)| (force, depth, contact.restitution)),
+        });
         HardestContact::from_contacts(&self.model, &self.units, contacts)
     }
 

@@ -196,18 +196,12 @@ impl OptimizationProblem {
         integrated: &mut usize,
     ) -> Evaluation {
         let by_chain = self.follow(point, Route::Chain, self.needs_contact());
-        self.evaluation_of(&by_chain, point, best, integrated)
+        self.bounded(self.evaluation_of(&by_chain), point, best, integrated)
     }
 
-    /// [`Self::bounded_evaluation`] of a design that was followed by its chain.
-    fn evaluation_of(
-        &self,
-        by_chain: &Result<EvaluatedDesign, String>,
-        point: &[f64],
-        best: f64,
-        integrated: &mut usize,
-    ) -> Evaluation {
-        let evaluated = |found: &Result<EvaluatedDesign, String>| match found {
+    /// The objectives and constraints of a design that was followed, and whether it was integrated.
+    fn evaluation_of(&self, found: &Result<EvaluatedDesign, String>) -> (Evaluation, bool) {
+        match found {
             Ok(design) => (self.evaluation(design), design.integrated),
             Err(_) => {
                 let none = Evaluation {
@@ -220,8 +214,18 @@ impl OptimizationProblem {
                 };
                 (none, false)
             }
-        };
-        let (evaluation, is_integrated) = evaluated(by_chain);
+        }
+    }
+
+    /// [`Self::bounded_evaluation`] of a design whose evaluation by its chain is known, and whether
+    /// it was integrated instead.
+    fn bounded(
+        &self,
+        (evaluation, is_integrated): (Evaluation, bool),
+        point: &[f64],
+        best: f64,
+        integrated: &mut usize,
+    ) -> Evaluation {
         let closest = evaluation.inequalities.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let tolerance = self.genetic.constraint_tolerance;
         let counts = self.objectives.len() > 1 || evaluation.value() < best;
@@ -229,8 +233,8 @@ impl OptimizationProblem {
             counts && closest > -MOST_OFF && !is_integrated && evaluation.is_feasible(tolerance);
         *integrated += usize::from(is_integrated || decides);
         if decides {
-            let (judged, _) =
-                evaluated(&self.follow(point, Route::Integration, self.needs_contact()));
+            let by_integration = self.follow(point, Route::Integration, self.needs_contact());
+            let (judged, _) = self.evaluation_of(&by_integration);
             if !judged.is_feasible(tolerance) {
                 return judged;
             }
@@ -246,15 +250,16 @@ impl OptimizationProblem {
     ) -> impl FnMut(&[Vec<f64>]) -> Vec<Evaluation> + 'a {
         let mut best = f64::INFINITY;
         move |points| {
-            let followed = self.follow_by_chain(points, self.needs_contact());
-            let evaluate = |(point, by_chain): (&Vec<f64>, &Result<EvaluatedDesign, String>)| {
-                let evaluation = self.evaluation_of(by_chain, point, best, integrated);
+            let keep = |design| self.evaluation_of(&design);
+            let by_chain = self.follow_by_chain(points, self.needs_contact(), keep);
+            let evaluate = |(point, by_chain): (&Vec<f64>, (Evaluation, bool))| {
+                let evaluation = self.bounded(by_chain, point, best, integrated);
                 if evaluation.is_feasible(self.genetic.constraint_tolerance) {
                     best = best.min(evaluation.value());
                 }
                 evaluation
             };
-            points.iter().zip(&followed).map(evaluate).collect()
+            points.iter().zip(by_chain).map(evaluate).collect()
         }
     }
 

@@ -112,25 +112,24 @@ pub const MOST_DAMPING: f64 = 0.5;
 /// ```
 pub fn chain(model: &Model, start: Start, settings: &Settings) -> Result<Simulation, ChainError> {
     let mut found = Err(ChainError::Upright(start.x));
-    chains(&[(*model, start)], settings, |_, motion| found = motion);
+    chains(std::iter::once((0, (*model, start))), settings, &mut |_, motion| found = motion);
     found
 }
 
 /// [`chain`] for many motions, several side by side; each is passed on with its number as it ends,
 /// bit for bit as alone.
 pub(super) fn chains(
-    motions: &[(Model, Start)],
+    mut waiting: impl Iterator<Item = (usize, (Model, Start))>,
     settings: &Settings,
-    mut done: impl FnMut(usize, Result<Simulation, ChainError>),
+    done: &mut dyn FnMut(usize, Result<Simulation, ChainError>),
 ) {
-    let mut waiting = motions.iter().enumerate();
     // Each of them stands at the start of a cycle.
     let mut active: Vec<(usize, Chain)> = Vec::with_capacity(LANES);
     loop {
         while active.len() < LANES
             && let Some((number, (model, start))) = waiting.next()
         {
-            match Chain::new(model, *start, settings) {
+            match Chain::new(&model, start, settings) {
                 Ok(mut chain) => match chain.reaches_cycle() {
                     true => active.push((number, chain)),
                     false => done(number, Ok(chain.finish())),
@@ -146,13 +145,13 @@ pub(super) fn chains(
         for ((_, chain), cycle) in active.iter_mut().zip(found) {
             chain.follow_cycle(cycle);
         }
-        active.retain_mut(|(number, chain)| {
-            let goes_on = chain.reaches_cycle();
-            if !goes_on {
-                done(*number, Ok(chain.finish()));
+        // A motion does not depend on its lane: the last takes the place of one that ends.
+        for lane in (0..active.len()).rev() {
+            if !active[lane].1.reaches_cycle() {
+                let (number, mut chain) = active.swap_remove(lane);
+                done(number, Ok(chain.finish()));
             }
-            goes_on
-        });
+        }
     }
 }
 
@@ -200,7 +199,7 @@ struct Chain {
     /// A tenth of the amplitude of the first swing.
     level: f64,
     /// The part of the motion that is integrated, from now on.
-    integrated: Option<Simulation>,
+    integrated: Option<Box<Simulation>>,
 }
 
 impl Chain {
@@ -671,7 +670,7 @@ impl Chain {
         let [x, velocity] = self.state;
         let motion = taylor::simulate_one(self.model, Start { x, velocity }, left);
         self.stop = Some(motion.stop.delayed_by(self.t));
-        self.integrated = Some(motion);
+        self.integrated = Some(Box::new(motion));
         None
     }
 

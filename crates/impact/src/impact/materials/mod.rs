@@ -32,6 +32,7 @@ use super::simulation::{ContactRecord, Integrator, NoRest, Settings, SimulationS
 use super::units::{FIRST_YIELD, Modulus, Units};
 use motion::StudiedCase;
 pub use motion::StudiedMotion;
+pub(crate) use motion::impacts_until;
 
 /// The default materials of a study, with their elastic moduli, Pa.
 pub const DEFAULT_MATERIALS: [(&str, f64); 3] = [

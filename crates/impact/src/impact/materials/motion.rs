@@ -13,7 +13,7 @@ use super::super::primary::{
 };
 use super::super::simulate::simulate;
 use super::super::simulation::{
-    CLOCK, ContactRecord, Integrator, Settings, Simulation, SimulationStop,
+    CLOCK, ContactRecord, Integrator, NoRest, Settings, Simulation, SimulationStop,
 };
 use super::super::units::Units;
 use super::{FirstContact, MaterialsError, MotionToRest};
@@ -189,15 +189,22 @@ impl From<&StudiedMotion> for MotionToRest {
     }
 }
 
+/// The contacts that begin before the rest, all of them without a rest time.
+pub(crate) fn impacts_until(
+    impacts: &[ContactRecord],
+    rest_time: Result<f64, NoRest>,
+) -> impl Iterator<Item = &ContactRecord> {
+    impacts.iter().filter(move |impact| {
+        rest_time.is_err() || rest_time.is_ok_and(|rest| impact.entry_time < rest)
+    })
+}
+
 impl From<&Simulation> for MotionToRest {
     fn from(motion: &Simulation) -> Self {
         let model = &motion.model;
         let rest_time = motion.rest().time;
-        let before_rest = |impact: &&ContactRecord| {
-            rest_time.is_err() || rest_time.is_ok_and(|rest| impact.entry_time < rest)
-        };
         let impacts: Vec<ContactRecord> =
-            motion.impacts.iter().filter(before_rest).copied().collect();
+            impacts_until(&motion.impacts, rest_time).copied().collect();
         let energy = |impact: &ContactRecord| {
             Some(model.swing_energy(model.barrier(impact.side)?, impact.speed_out?))
         };

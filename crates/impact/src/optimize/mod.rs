@@ -30,6 +30,7 @@
 
 mod decision;
 mod design;
+mod known;
 mod objective;
 mod question;
 mod study;

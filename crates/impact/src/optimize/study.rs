@@ -5,6 +5,7 @@
 
 use super::decision::Decision;
 use super::design::{EvaluatedDesign, Route};
+use super::known::KnownDesigns;
 use super::objective::Objective;
 use super::question::{LARGEST_EXCESS, OptimizationProblem, OptimizeError};
 use crate::decimal::significant;
@@ -243,15 +244,24 @@ impl OptimizationProblem {
     }
 
     /// The function that a search minimises, of many points at once; it remembers the best value so
-    /// far, and counts the designs that were integrated.
+    /// far, and counts the designs that were integrated. `known` are designs that were followed
+    /// before, where a search comes back to them: a genetic one gives most of its children values
+    /// that it has had.
     fn evaluate<'a>(
         &'a self,
         integrated: &'a mut usize,
+        mut known: Option<KnownDesigns>,
     ) -> impl FnMut(&[Vec<f64>]) -> Vec<Evaluation> + 'a {
         let mut best = f64::INFINITY;
-        move |points| {
+        let follow = |points: &[Vec<f64>]| {
             let keep = |design| self.evaluation_of(&design);
-            let by_chain = self.follow_by_chain(points, self.needs_contact(), keep);
+            self.follow_by_chain(points, self.needs_contact(), keep)
+        };
+        move |points| {
+            let by_chain = match &mut known {
+                Some(known) => known.recalled(points, follow),
+                None => follow(points),
+            };
             let evaluate = |(point, by_chain): (&Vec<f64>, (Evaluation, bool))| {
                 let evaluation = self.bounded(by_chain, point, best, integrated);
                 if evaluation.is_feasible(self.genetic.constraint_tolerance) {
@@ -270,7 +280,7 @@ impl OptimizationProblem {
             (watch.progress)(1);
             !(watch.stop)()
         };
-        let evaluate = self.evaluate(&mut integrated);
+        let evaluate = self.evaluate(&mut integrated, Some(KnownDesigns::default()));
         let (front, run) = match self.objectives.len() {
             1 => {
                 let run = search(space, evaluate, &self.genetic, &mut generator, &mut go_on);
@@ -617,7 +627,7 @@ fn rivals(
         let mut integrated = 0;
         random_search(
             space,
-            question.evaluate(&mut integrated),
+            question.evaluate(&mut integrated, None),
             budget,
             constraint_tolerance,
             &mut generator,
@@ -628,7 +638,7 @@ fn rivals(
         let mut integrated = 0;
         differential_evolution(
             space,
-            question.evaluate(&mut integrated),
+            question.evaluate(&mut integrated, None),
             budget,
             constraint_tolerance,
             seed,

@@ -33,6 +33,7 @@ use super::state_jumps::{StateJumps, drive_of, flow_in_phase};
 use crate::coupled::CoupledEquations;
 use crate::expr::Expr;
 use crate::numeric::orbit_branch::{OrbitBranchLimits, OrbitEquations, OrbitPoint, PeriodImage};
+use crate::parallel::par_map;
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::continuation::BranchEnd;
 use crate::response::{
@@ -378,7 +379,7 @@ impl TwoParameters<'_> {
 }
 
 /// The numbers of stable motions at values of the parameter that varies and of a second one. The
-/// branches at each value of the second are searched for anew, with less effort.
+/// branches at each value of the second are searched for anew, with less effort, on all threads.
 ///
 /// # Errors
 /// [`ResponseError`].
@@ -392,18 +393,19 @@ pub(super) fn stable_motions(
     };
     let parameters = spaced(COUNTED[0], question.range);
     let along = spaced(COUNTED[1], range);
-    let mut counts = Vec::new();
     question.progress.begin(along.len());
-    for value in &along {
-        let question = question.at(second, *value);
-        let problem = CoupledProblem::new(&question, equations)?;
-        let known = problem.driven_branches(true);
-        counts.push(problem.stable_at(&known, &parameters));
+    // A row needs none of the others.
+    let row = |value: &f64| -> Option<Result<Vec<usize>, ResponseError>> {
+        let found = (!question.interrupt.is_requested()).then(|| {
+            let question = question.at(second, *value);
+            let problem = CoupledProblem::new(&question, equations)?;
+            Ok(problem.stable_at(&problem.driven_branches(true), &parameters))
+        });
         question.progress.advance();
-        if question.interrupt.is_requested() {
-            break;
-        }
-    }
+        found
+    };
+    let rows = par_map(&along, row).into_iter();
+    let counts: Vec<Vec<usize>> = rows.map_while(|row| row).collect::<Result<_, _>>()?;
     let along = along[..counts.len()].to_vec();
     Ok(StableMotions { parameters, along, counts })
 }

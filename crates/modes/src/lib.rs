@@ -14,7 +14,7 @@
 #[doc(no_inline)]
 pub use lindstedt_dynamics::{coupled, mechanics};
 #[doc(no_inline)]
-pub use lindstedt_expr::{decimal, exact, expr, symbol, values};
+pub use lindstedt_expr::{decimal, exact, expr, parallel, symbol, values};
 #[doc(no_inline)]
 pub use lindstedt_numeric::{interrupt, numeric};
 #[doc(no_inline)]

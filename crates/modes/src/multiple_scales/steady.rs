@@ -20,6 +20,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::SlowMotion;
 use crate::interrupt::Interrupt;
+use crate::parallel::par_map;
 use crate::solution::defined_values;
 use crate::symbol::Symbol;
 
@@ -269,12 +270,7 @@ impl SlowNumbers {
     ) -> SlowSteadyStates {
         let count = self.rates.len();
         let mut random = ChaCha8Rng::seed_from_u64(0);
-        let mut all = SlowSteadyStates::default();
-        let found = &mut all.isolated;
-        for start in 0..=known.len() + starts {
-            if interrupt.is_requested() {
-                break;
-            }
+        let mut place_of = |start: usize| {
             let mut place = DVector::zeros(2 * count + self.open.nrows());
             if let Some(state) = start.checked_sub(1).and_then(|index| known.get(index)) {
                 for (mode, (a, phase)) in state.amplitudes.iter().zip(&state.phases).enumerate() {
@@ -294,7 +290,15 @@ impl SlowNumbers {
                         (size * phase.cos(), size * phase.sin());
                 }
             }
-            let state = match self.solved(place) {
+            place
+        };
+        let places: Vec<DVector<f64>> = (0..=known.len() + starts).map(&mut place_of).collect();
+        let solve =
+            |place: &DVector<f64>| (!interrupt.is_requested()).then(|| self.solved(place.clone()));
+        let mut all = SlowSteadyStates::default();
+        let found = &mut all.isolated;
+        for solved in par_map(&places, solve).into_iter().map_while(|solved| solved) {
+            let state = match solved {
                 Solved::Isolated(state) => state,
                 Solved::Family => {
                     all.has_families = true;

@@ -233,7 +233,15 @@ impl TrialMotion {
     /// The range of x^2 from the beginning to this time, as far as a few looks tell, for these
     /// places of exponents and angles no greater than `farthest`.
     fn squares(&self, present: &[usize], time: f64, farthest: f64) -> [f64; 2] {
-        let steps = self.exponents.map(|exponent| (exponent * (time / f64::from(LOOKS))).exp());
+        // Those of conjugates are conjugates, to the last bit.
+        let mut steps = [ZERO; EXPONENTS];
+        for place in 0..EXPONENTS {
+            let mirrored = CONJUGATE[place];
+            steps[place] = match mirrored < place {
+                true => steps[mirrored].conj(),
+                false => (self.exponents[place] * (time / f64::from(LOOKS))).exp(),
+            };
+        }
         let mut waves = self.x;
         let mut range = [f64::INFINITY, 0.0_f64];
         let mut before = 0.0;

@@ -66,7 +66,7 @@ pub fn simulate_primary(
 }
 
 /// Follows several motions of a main mass: their integrated phases run side by side, and each motion is bit for bit
-/// that of [`simulate_primary`] alone.
+/// that of [`simulate_primary`] alone, but that its state is kept at the end alone.
 pub(super) fn simulate_primaries(
     motions: &[(PrimaryCase, PrimarySettings)],
 ) -> Vec<Result<PrimaryMotion, PrimaryError>> {
@@ -76,7 +76,10 @@ pub(super) fn simulate_primaries(
     let mut followed: Vec<(usize, FollowedMotion)> = vec![];
     for (index, (case, settings)) in motions.iter().enumerate() {
         match FollowedMotion::new(*case, settings, derived.clone()) {
-            Ok(motion) => followed.push((index, motion)),
+            Ok(mut motion) => {
+                motion.run.path = PrimaryPath::of_end();
+                followed.push((index, motion));
+            }
             Err(error) => found[index] = Some(Err(error)),
         }
     }

@@ -86,10 +86,20 @@ pub(super) struct PrimaryPath {
     /// Each with the time at which it begins.
     pieces: Vec<(f64, PrimarySegment)>,
     end: f64,
+    /// Whether the last piece alone is kept.
+    keeps_last: bool,
 }
 
 impl PrimaryPath {
+    /// A path that keeps its last piece alone, for who asks for the end of the motion only.
+    pub(super) fn of_end() -> Self {
+        Self { keeps_last: true, ..Self::default() }
+    }
+
     pub(super) fn push(&mut self, start: f64, end: f64, piece: PrimarySegment) {
+        if self.keeps_last {
+            self.pieces.clear();
+        }
         self.pieces.push((start, piece));
         self.end = end;
     }

@@ -302,25 +302,31 @@ fn end_of_range(length: f64, mut is_within: impl FnMut(f64) -> bool) -> Option<f
 pub struct Path {
     motion: PathRepresentation,
     end: f64,
-    /// The states at the end.
-    last: Vec<f64>,
     reason: PathEnd,
-    occurrences: Vec<EventCrossing>,
 }
 
 /// The representation from which states are interpolated.
 #[derive(Clone, Debug)]
 enum PathRepresentation {
     Taylor { steps: TaylorSteps, start: f64 },
-    RungeKutta(runge_kutta::ScaledTrajectory),
+    RungeKutta(Box<EvaluatedPath>),
+}
+
+/// A path by Runge-Kutta.
+#[derive(Clone, Debug)]
+struct EvaluatedPath {
+    motion: runge_kutta::ScaledTrajectory,
+    /// The states at the end.
+    last: Vec<f64>,
+    occurrences: Vec<EventCrossing>,
 }
 
 impl Path {
     /// A path that ends at the time at which it begins, in these states.
-    pub fn at_instant(time: f64, states: Vec<f64>, reason: PathEnd) -> Self {
-        let steps = TaylorSteps::at_rest(states.clone());
+    pub fn at_instant(time: f64, states: &[f64], reason: PathEnd) -> Self {
+        let steps = TaylorSteps::at_rest(states);
         let motion = PathRepresentation::Taylor { steps, start: time };
-        Self { motion, end: time, last: states, reason, occurrences: vec![] }
+        Self { motion, end: time, reason }
     }
 
     /// The time at which the path ends.
@@ -335,20 +341,26 @@ impl Path {
 
     /// The events met, in order.
     pub fn occurrences(&self) -> &[EventCrossing] {
-        &self.occurrences
+        match &self.motion {
+            PathRepresentation::Taylor { steps, .. } => &steps.lists.occurrences,
+            PathRepresentation::RungeKutta(path) => &path.occurrences,
+        }
     }
 
     /// The states at the end as they were computed there, from which the motion goes on. [`Path::states_at`] is
     /// at the time of the end, which is rounded.
     pub fn last_states(&self) -> &[f64] {
-        &self.last
+        match &self.motion {
+            PathRepresentation::Taylor { steps, .. } => &steps.lists.last,
+            PathRepresentation::RungeKutta(path) => &path.last,
+        }
     }
 
     /// The number of steps.
     pub fn step_count(&self) -> usize {
         match &self.motion {
             PathRepresentation::Taylor { steps, .. } => steps.count(),
-            PathRepresentation::RungeKutta(motion) => motion.step_count(),
+            PathRepresentation::RungeKutta(path) => path.motion.step_count(),
         }
     }
 
@@ -359,7 +371,7 @@ impl Path {
         }
         match &self.motion {
             PathRepresentation::Taylor { steps, start } => steps.states_at(time - start),
-            PathRepresentation::RungeKutta(motion) => motion.states_at(time),
+            PathRepresentation::RungeKutta(path) => path.motion.states_at(time),
         }
     }
 }

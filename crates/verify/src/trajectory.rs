@@ -52,7 +52,7 @@ pub use section::{Crossing, MOST_CROSSINGS, PoincareSection};
 pub use sensitivity::{DISPLACEMENT, LyapunovExponent};
 pub use sweep::{SweptMotion, sweep};
 
-use event_run::{EventRun, RunEnd};
+use event_run::{EventRun, PieceKeeping, RunEnd};
 use events::{CompiledEvents, WORK_OF_EVENTS};
 pub use events::{EventOccurrence, EventRecord};
 use hold::{Layout, friction_arguments};
@@ -127,6 +127,8 @@ pub struct Trajectory {
     /// The events that took place.
     pub events: EventRecord,
     pieces: Vec<TrajectorySegment>,
+    /// The ranges of the coordinates on earlier pieces that are not kept; none if all are.
+    earlier: Vec<[f64; 2]>,
     on_section: OnSection,
     reason: PathEnd,
 }
@@ -414,6 +416,7 @@ impl TrajectoryRequest {
     fn followed_together(
         courses: Vec<Self>,
         ready: Option<&Ready>,
+        keeping: &PieceKeeping,
     ) -> Vec<Result<Trajectory, TrajectoryError>> {
         let made_ready = |course: &Self| {
             let adapted = match ready {
@@ -440,7 +443,10 @@ impl TrajectoryRequest {
                         let reason = PathEnd::NoReset;
                         Ok(EventRun::ended_at_start(course, ready, start, integrator, reason))
                     }
-                    run => run,
+                    run => run.map(|mut run| {
+                        run.keep(keeping.clone());
+                        run
+                    }),
                 }
             })
             .collect();
@@ -490,7 +496,7 @@ impl TrajectoryRequest {
     /// The motion of pieces that have been followed.
     fn motion(
         self,
-        RunEnd { pieces, reason, walls, events }: RunEnd,
+        RunEnd { pieces, earlier, reason, walls, events }: RunEnd,
         integrator: Integrator,
     ) -> Result<Trajectory, TrajectoryError> {
         let mut motion = Trajectory {
@@ -500,6 +506,7 @@ impl TrajectoryRequest {
             walls,
             events,
             pieces,
+            earlier,
             on_section: OnSection::default(),
             reason,
         };
@@ -710,7 +717,7 @@ struct TrajectorySegment {
     path: Path,
     /// The map from the integrated states to all states on a sliding segment; `None` if all states
     /// are integrated.
-    layout: Option<Layout>,
+    layout: Option<Box<Layout>>,
     /// The number of events of the path that are those of the section; they come first.
     recorded: usize,
 }
@@ -728,12 +735,15 @@ impl TrajectorySegment {
         })
     }
 
-    /// The states at the end, from which the motion goes on.
-    fn last_states(&self) -> Option<Vec<f64>> {
-        match self.is_held() {
-            true => self.states_at(self.end()),
-            false => Some(self.path.last_states().to_vec()),
+    /// Writes the states at the end, from which the motion goes on; `false` if they are not known.
+    fn write_last_states(&self, states: &mut Vec<f64>) -> bool {
+        let held = self.is_held().then(|| self.states_at(self.end()));
+        let last = held.as_ref().map_or_else(|| Some(self.path.last_states()), Option::as_deref);
+        if let Some(last) = last {
+            states.clear();
+            states.extend_from_slice(last);
         }
+        last.is_some()
     }
 
     /// Adds the states at times in increasing order, those up to the end, to a sample.

@@ -479,21 +479,23 @@ impl SystemSeries {
             return;
         }
         for (event, before) in signs.iter_mut().enumerate() {
-            let series = self.event(event);
-            let (sign, crossed) = sign_and_roots(series, 0.0, length);
+            let first = met.len();
+            let sign = sign_and_roots(self.event(event), 0.0, length, &mut |place, rising| {
+                met.push((event, place, rising));
+            });
             if sign == 0.0 {
+                met.truncate(first);
                 continue;
             }
             if *before == -sign {
-                met.push((event, 0.0, sign > 0.0));
+                met.insert(first, (event, 0.0, sign > 0.0));
             }
-            *before = sign;
-            for (place, rising) in crossed {
-                met.push((event, place, rising));
-                *before = if rising { 1.0 } else { -1.0 };
-            }
+            let last = met[first..].last().map(|(_, _, rising)| *rising);
+            *before = last.map_or(sign, |rising| if rising { 1.0 } else { -1.0 });
         }
-        met.sort_by(|one, other| one.1.total_cmp(&other.1));
+        if met.len() > 1 {
+            met.sort_by(|one, other| one.1.total_cmp(&other.1));
+        }
     }
 
     /// Returns the first corner met within a step, and the time since its start: 0 if the motion

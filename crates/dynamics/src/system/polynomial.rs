@@ -59,22 +59,30 @@ fn add_values<const N: usize>(series: &[f64], places: &[f64], into: &mut Vec<f64
 /// other interval is halved (G. E. Collins, A. G. Akritas, SYMSAC 1976, 272; J. M. Lane, R. F.
 /// Riesenfeld, BIT 21 (1981) 112).
 pub(super) fn roots(series: &[f64], from: f64, to: f64) -> Vec<(f64, bool)> {
-    sign_and_roots(series, from, to).1
+    let mut roots = vec![];
+    sign_and_roots(series, from, to, &mut |root, rising| roots.push((root, rising)));
+    roots
 }
 
 /// Returns the sign with which the search for roots begins on an interval, 0 if all coefficients are
-/// zero, and the [`roots`].
-pub(super) fn sign_and_roots(series: &[f64], from: f64, to: f64) -> (f64, Vec<(f64, bool)>) {
+/// zero, and hands over each of the [`roots`].
+pub(super) fn sign_and_roots(
+    series: &[f64],
+    from: f64,
+    to: f64,
+    found: &mut dyn FnMut(f64, bool),
+) -> f64 {
     let terms = TermSizes::new(series, to.abs().max(from.abs()));
     match series.first() {
-        None => (0.0, vec![]),
+        None => 0.0,
         // Most series have no root, since the constant outweighs all other terms.
-        Some(constant) if terms.constant > terms.others => (constant.signum(), vec![]),
+        Some(constant) if terms.constant > terms.others => constant.signum(),
         // Of the others most grow or fall throughout, since the linear term outweighs the later ones, and
         // have no more than one.
         _ => {
             let most = (2.0 * terms.linear > terms.slopes(series)).then_some(1);
-            (sign_at_start(series, from, to), roots_of_at_most(most, series, from, to))
+            roots_of_at_most(most, series, from, to, found);
+            sign_at_start(series, from, to)
         }
     }
 }
@@ -131,13 +139,10 @@ fn in_fours(count: usize, s: f64, coefficient: impl Fn(usize) -> f64) -> f64 {
 }
 
 /// Extends a range by the values of a polynomial between two places from 0 on: at both of them, and where its slope
-/// passes through zero in between. `slope` is memory for the coefficients of the slope.
-pub(super) fn extend_range(
-    range: &mut [f64; 2],
-    series: &[f64],
-    [from, to]: [f64; 2],
-    slope: &mut Vec<f64>,
-) {
+/// passes through zero in between.
+pub(super) fn extend_range(range: &mut [f64; 2], series: &[f64], [from, to]: [f64; 2]) {
+    /// Number of coefficients of a slope that need no memory of their own.
+    const SHORT: usize = 32;
     /// Units in the last place by which a value may exceed the sum of its terms.
     const DIGITS: f64 = 8.0;
     let [constant, linear, ..] = *series else {
@@ -154,28 +159,31 @@ pub(super) fn extend_range(
     if constant.min(end) - reach >= range[0] && constant.max(end) + reach <= range[1] {
         return;
     }
-    // A polynomial whose linear term outweighs all later ones grows or falls throughout.
-    let turns = match 2.0 * terms.linear > terms.slopes(series) {
-        true => vec![],
-        false => {
-            slope.clear();
-            let of_slope = series.iter().enumerate().skip(1);
-            slope.extend(of_slope.map(|(k, coefficient)| k as f64 * coefficient));
-            roots_of_at_most(None, slope, from, to)
-        }
-    };
     let mut extend = |value: f64| *range = [range[0].min(value), range[1].max(value)];
-    if from != 0.0 {
-        extend(value(series, from));
-    } else {
-        extend(constant);
-    }
-    match *turns.as_slice() {
-        [(turn, _)] => value_at_both(series, [to, turn]).into_iter().for_each(&mut extend),
-        _ => {
-            extend(value(series, to));
-            turns.iter().for_each(|(turn, _)| extend(value(series, *turn)));
+    extend(if from != 0.0 { value(series, from) } else { constant });
+    // A polynomial whose linear term outweighs all later ones grows or falls throughout.
+    let mut turn = None;
+    if 2.0 * terms.linear <= terms.slopes(series) {
+        let (mut short, mut long) = ([0.0; SHORT], vec![]);
+        let slope = match short.get_mut(..series.len() - 1) {
+            Some(short) => short,
+            None => {
+                long.resize(series.len() - 1, 0.0);
+                long.as_mut_slice()
+            }
+        };
+        for (k, (coefficient, of_slope)) in series[1..].iter().zip(slope.iter_mut()).enumerate() {
+            *of_slope = (k + 1) as f64 * coefficient;
         }
+        roots_of_at_most(None, slope, from, to, &mut |place, _| {
+            if let Some(other) = turn.replace(place) {
+                extend(value(series, other));
+            }
+        });
+    }
+    match turn {
+        Some(turn) => value_at_both(series, [to, turn]).into_iter().for_each(extend),
+        None => extend(value(series, to)),
     }
 }
 
@@ -190,15 +198,15 @@ fn value_at_both(series: &[f64], places: [f64; 2]) -> [f64; 2] {
     sums
 }
 
-/// Returns the roots of a polynomial, of which there are at most so many if that is known.
+/// Hands over the roots of a polynomial, of which there are at most so many if that is known.
 fn roots_of_at_most(
     mut most: Option<usize>,
     series: &[f64],
     from: f64,
     to: f64,
-) -> Vec<(f64, bool)> {
+    found: &mut dyn FnMut(f64, bool),
+) {
     const MOST_INTERVALS: usize = 4000;
-    let mut roots = Vec::new();
     // Most roots are alone in the whole interval.
     let (mut next, mut open) = (Some((from, to)), Vec::new());
     for _ in 0..MOST_INTERVALS {
@@ -235,11 +243,12 @@ fn roots_of_at_most(
                 } else {
                     root_between(series, [low, end], at_low > 0.0, low + part * (end - low))
                 };
-                roots.extend(root.map(|root| (root, at_low < 0.0)));
+                if let Some(root) = root {
+                    found(root, at_low < 0.0);
+                }
             }
         }
     }
-    roots
 }
 
 /// Returns the root between two places, at the first of which the polynomial is positive or not, by Newton's
@@ -516,7 +525,6 @@ mod tests {
     fn a_range_holds_both_ends_and_every_turn_between() {
         let chebyshev = [0.0, 9.0, 0.0, -120.0, 0.0, 432.0, 0.0, -576.0, 0.0, 256.0];
         let angle = |s: f64| 9.0 * s.acos();
-        let mut slope = vec![];
         for [from, to] in [[0.0, 1.0], [0.0, 0.1], [0.2, 0.5], [0.3, 0.31], [0.9, 1.0], [0.5, 0.5]]
         {
             let mut expected = [angle(from).cos(), angle(to).cos()];
@@ -527,16 +535,16 @@ mod tests {
                 expected[usize::from(turn % 2 == 0)] = if turn % 2 == 0 { 1.0 } else { -1.0 };
             }
             let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-            extend_range(&mut range, &chebyshev, [from, to], &mut slope);
+            extend_range(&mut range, &chebyshev, [from, to]);
             let apart = |index: usize| (range[index] - expected[index]).abs();
             assert!(apart(0) < 1e-13 && apart(1) < 1e-13, "{from} {to}: {range:?} {expected:?}");
             // What lies inside is no new value.
             let mut wider = [-2.0, 2.0];
-            extend_range(&mut wider, &chebyshev, [from, to], &mut slope);
+            extend_range(&mut wider, &chebyshev, [from, to]);
             assert_eq!(wider, [-2.0, 2.0]);
         }
         let mut range = [0.0, 1.0];
-        extend_range(&mut range, &[3.0], [0.0, 1.0], &mut slope);
+        extend_range(&mut range, &[3.0], [0.0, 1.0]);
         assert_eq!(range, [0.0, 3.0]);
     }
 }

@@ -202,8 +202,8 @@ pub(super) fn follow(
         (None, reason) => (motion.units.time(last.t), reason),
     };
     let last = motion.states_at(end).unwrap_or_else(|| values.to_vec());
-    let motion = super::PathRepresentation::RungeKutta(motion);
-    Ok(Path { end, last, reason, occurrences, motion })
+    let path = Box::new(super::EvaluatedPath { motion, last, occurrences });
+    Ok(Path { end, reason, motion: super::PathRepresentation::RungeKutta(path) })
 }
 
 /// Returns the crossings of the user's events, each of them once.

@@ -12,7 +12,7 @@ use crate::numeric::ode::root::find_root;
 
 use super::expansion::SystemSeries;
 use super::polynomial::{extend_range, sign_and_roots, value, values};
-use super::spare_memory::{SpareMemory, SparingList};
+use super::spare_memory::{PathLists, SpareMemory, SparingLists};
 
 /// The steps of a path.
 #[derive(Clone, Debug)]
@@ -21,20 +21,17 @@ pub(super) struct TaylorSteps {
     order: usize,
     /// The number of steps that are no longer kept.
     forgotten: usize,
-    steps: Vec<TaylorStep>,
     /// The number of steps, the first ones, whose coefficients are no longer kept.
     without_series: usize,
-    /// The coefficients of `s^0, s^1, ...`, step by step and state by state.
-    coefficients: SparingList,
-    /// The points of expansion, step by step.
-    points: Vec<f64>,
+    /// The steps with their coefficients and points of expansion, the events met and the states at the end.
+    pub(super) lists: SparingLists,
     /// The recurrences that compute missing coefficients once more; `None` if all are kept.
     recurrences: Option<Box<SideRecurrences>>,
 }
 
 /// A step from one expansion to the next.
 #[derive(Clone, Copy, Debug)]
-struct TaylorStep {
+pub(super) struct TaylorStep {
     /// Its start, as time since the start of the path.
     start: f64,
     /// The largest value of the variable of its series.
@@ -71,50 +68,54 @@ impl TaylorSteps {
             states,
             order,
             forgotten: 0,
-            steps: vec![],
             without_series: 0,
-            coefficients: memory.list(),
-            points: vec![],
+            lists: memory.lists(),
             recurrences: None,
         }
     }
 
     /// A single step of length zero in these states.
-    pub(super) fn at_rest(values: Vec<f64>) -> Self {
-        let step = TaylorStep { start: 0.0, length: 0.0, first: 0, point: 0 };
-        let empty = Self::new(values.len(), 0, &SpareMemory::default());
-        Self { steps: vec![step], coefficients: values.into(), ..empty }
+    pub(super) fn at_rest(values: &[f64]) -> Self {
+        let mut steps = Self::new(values.len(), 0, &SpareMemory::default());
+        let PathLists { steps: list, coefficients, last, .. } = &mut *steps.lists;
+        list.push(TaylorStep { start: 0.0, length: 0.0, first: 0, point: 0 });
+        coefficients.extend_from_slice(values);
+        last.extend_from_slice(values);
+        steps
     }
 
     /// The number of steps, including those that are no longer kept.
     pub(super) fn count(&self) -> usize {
-        self.forgotten + self.steps.len()
+        self.forgotten + self.lists.steps.len()
     }
 
     /// Keeps only the last two steps, one of which may still be taken back, when many have ended
     /// before this time since the start of the path.
     pub(super) fn forget_before(&mut self, time: f64) {
         const MANY: usize = 64;
-        let [.., before, last] = self.steps.as_slice() else { return };
-        if self.steps.len() < MANY || before.start > time || last.start > time {
+        let [.., before, last] = self.lists.steps.as_slice() else { return };
+        let count = self.lists.steps.len();
+        if count < MANY || before.start > time || last.start > time {
             return;
         }
-        let (unneeded, point) = (self.steps.len() - 2, before.point);
+        let (unneeded, point) = (count - 2, before.point);
         self.drop_series();
         self.forgotten += unneeded;
         self.without_series = 0;
-        self.steps.drain(..unneeded);
-        self.points.drain(..point);
-        self.steps.iter_mut().for_each(|step| step.point -= point);
+        let PathLists { steps, points, .. } = &mut *self.lists;
+        steps.drain(..unneeded);
+        points.drain(..point);
+        steps.iter_mut().for_each(|step| step.point -= point);
     }
 
     /// Keeps the coefficients of the last two steps alone.
     fn drop_series(&mut self) {
-        let [.., before, _] = self.steps.as_slice() else { return };
+        let PathLists { steps, coefficients, .. } = &mut *self.lists;
+        let [.., before, _] = steps.as_slice() else { return };
         let first = before.first;
-        self.without_series = self.steps.len() - 2;
-        self.coefficients.drain(..first);
-        self.steps[self.without_series..].iter_mut().for_each(|step| step.first -= first);
+        self.without_series = steps.len() - 2;
+        coefficients.drain(..first);
+        steps[self.without_series..].iter_mut().for_each(|step| step.first -= first);
     }
 
     /// Ends a path that starts at the time `origin`. `recurrences` gives those for the signs of the
@@ -129,8 +130,8 @@ impl TaylorSteps {
             return;
         }
         let mut sides: Vec<(Vec<f64>, SystemSeries)> = vec![];
-        for step in &self.steps[..self.without_series] {
-            let signs = &self.points[step.point..][..roots];
+        for step in &self.lists.steps[..self.without_series] {
+            let signs = &self.lists.points[step.point..][..roots];
             if sides.iter().all(|(known, _)| known != signs) {
                 sides.extend(recurrences(signs).map(|series| (signs.to_vec(), series)));
             }
@@ -140,12 +141,12 @@ impl TaylorSteps {
 
     /// The start of the first step that is kept; infinity before the first.
     pub(super) fn first_start(&self) -> f64 {
-        self.steps.first().map_or(f64::INFINITY, |step| step.start)
+        self.lists.steps.first().map_or(f64::INFINITY, |step| step.start)
     }
 
     /// The start of the last step.
     pub(super) fn last_start(&self) -> Option<f64> {
-        self.steps.last().map(|step| step.start)
+        self.lists.steps.last().map(|step| step.start)
     }
 
     /// Adds a step that begins at this time, with the length, the point and the polynomials of its
@@ -159,25 +160,27 @@ impl TaylorSteps {
     ) {
         /// Number of coefficients that are kept: 4 MB.
         const MOST_COEFFICIENTS: usize = 1 << 19;
-        if self.coefficients.len() > MOST_COEFFICIENTS {
+        if self.lists.coefficients.len() > MOST_COEFFICIENTS {
             self.drop_series();
         }
-        let (first, place) = (self.coefficients.len(), self.points.len());
-        self.coefficients.reserve((self.states + usize::from(time.is_some())) * (self.order + 1));
-        self.steps.push(TaylorStep { start, length, first, point: place });
+        let PathLists { steps, coefficients, points, .. } = &mut *self.lists;
+        coefficients.reserve((self.states + usize::from(time.is_some())) * (self.order + 1));
+        let (first, place) = (coefficients.len(), points.len());
+        steps.push(TaylorStep { start, length, first, point: place });
         let ExpansionPoint { root_signs, sides, values } = point;
-        [root_signs, sides, values].into_iter().for_each(|own| self.points.extend_from_slice(own));
-        states.for_each(|series| self.coefficients.extend_from_slice(series));
+        [root_signs, sides, values].into_iter().for_each(|own| points.extend_from_slice(own));
+        states.for_each(|series| coefficients.extend_from_slice(series));
         if time.is_some() {
-            self.coefficients.extend(time_since_start(time));
+            coefficients.extend(time_since_start(time));
         }
     }
 
     /// Removes the last step; returns its start.
     pub(super) fn pop(&mut self) -> Option<f64> {
-        let step = self.steps.pop()?;
-        self.coefficients.truncate(step.first);
-        self.points.truncate(step.point);
+        let PathLists { steps, coefficients, points, .. } = &mut *self.lists;
+        let step = steps.pop()?;
+        coefficients.truncate(step.first);
+        points.truncate(step.point);
         Some(step.start)
     }
 
@@ -203,21 +206,25 @@ impl TaylorSteps {
     pub(super) fn zeros(&self, [from, end]: [f64; 2], state: usize) -> Vec<f64> {
         let first = self.step_at(from).unwrap_or(0);
         let (mut zeros, mut before) = (Vec::new(), 0.0);
-        let steps = if state < self.states { first..self.steps.len() } else { 0..0 };
+        let steps = if state < self.states { first..self.lists.steps.len() } else { 0..0 };
         let mut reader = StepReader::new(self);
         for step in steps {
-            let is_last = step + 1 == self.steps.len();
+            let is_last = step + 1 == self.lists.steps.len();
             let own = reader.series(step);
             let (start, series) = (own.step.start, own.state(state));
             let here = if from <= start { 0.0 } else { own.place(from) };
             let there = if is_last { own.place(end) } else { own.step.length };
-            let (sign, met) = sign_and_roots(series, here, there);
+            let first = zeros.len();
+            let mut last = None;
+            let sign = sign_and_roots(series, here, there, &mut |place, rising| {
+                zeros.push(start + own.since_start(place));
+                last = Some(if rising { 1.0 } else { -1.0 });
+            });
             // A crossing that rounding has put between two steps.
             if sign != 0.0 && before == -sign {
-                zeros.push(start);
+                zeros.insert(first, start);
             }
-            before = met.last().map_or(sign, |(_, rising)| if *rising { 1.0 } else { -1.0 });
-            zeros.extend(met.into_iter().map(|(place, _)| start + own.since_start(place)));
+            before = last.unwrap_or(sign);
         }
         zeros
     }
@@ -225,16 +232,15 @@ impl TaylorSteps {
     /// The least and the greatest value of a state from one time until another.
     pub(super) fn range(&self, [from, end]: [f64; 2], state: usize) -> [f64; 2] {
         let first = self.step_at(from).unwrap_or(0);
-        let steps = if state < self.states { first..self.steps.len() } else { 0..0 };
+        let steps = if state < self.states { first..self.lists.steps.len() } else { 0..0 };
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-        let mut slope = Vec::new();
         let mut reader = StepReader::new(self);
         for step in steps {
-            let is_last = step + 1 == self.steps.len();
+            let is_last = step + 1 == self.lists.steps.len();
             let own = reader.series(step);
             let here = if from <= own.step.start { 0.0 } else { own.place(from) };
             let there = if is_last { own.place(end) } else { own.step.length };
-            extend_range(&mut range, own.state(state), [here, there], &mut slope);
+            extend_range(&mut range, own.state(state), [here, there]);
         }
         range
     }
@@ -242,21 +248,28 @@ impl TaylorSteps {
     /// Appends the values of the first states, a column for each, at times in increasing order; the path
     /// starts at `start`.
     pub(super) fn sample(&self, start: f64, mut times: &[f64], columns: &mut [Vec<f64>]) {
-        let mut places = Vec::new();
+        const FEW: usize = 8;
+        let (mut few, mut many) = ([0.0; FEW], vec![]);
         let mut reader = StepReader::new(self);
         let mut step = 0;
-        while let (Some(first), true) = (times.first(), step < self.steps.len()) {
+        while let (Some(first), true) = (times.first(), step < self.lists.steps.len()) {
             step = self.step_at(*first - start).unwrap_or(step);
-            let count = match self.steps.get(step + 1) {
+            let count = match self.lists.steps.get(step + 1) {
                 Some(next) => times.partition_point(|time| *time - start < next.start),
                 None => times.len(),
             };
             let (own, others) = times.split_at(count);
             let series = reader.series(step);
-            places.clear();
-            places.extend(own.iter().map(|time| series.place(*time - start)));
+            if many.len() < own.len() && own.len() > FEW {
+                many.resize(own.len(), 0.0);
+            }
+            let places = if own.len() > FEW { many.as_mut_slice() } else { &mut few };
+            let places = &mut places[..own.len()];
+            for (place, time) in places.iter_mut().zip(own) {
+                *place = series.place(*time - start);
+            }
             for (state, column) in columns.iter_mut().enumerate().take(self.states) {
-                values(series.state(state), &places, column);
+                values(series.state(state), places, column);
             }
             times = others;
         }
@@ -264,7 +277,7 @@ impl TaylorSteps {
 
     /// Returns the index of the step at a time; `None` before the first.
     fn step_at(&self, time: f64) -> Option<usize> {
-        self.steps.partition_point(|step| step.start <= time).checked_sub(1)
+        self.lists.steps.partition_point(|step| step.start <= time).checked_sub(1)
     }
 }
 
@@ -291,16 +304,16 @@ impl<'a> StepReader<'a> {
     /// The polynomials of a step.
     fn series(&mut self, index: usize) -> StepSeries<'_> {
         let path = self.path;
-        let step = path.steps[index];
+        let PathLists { steps, coefficients, .. } = &*path.lists;
+        let step = steps[index];
         let coefficients = match index < path.without_series {
             true => {
                 self.compute(index);
                 self.computed.as_slice()
             }
             false => {
-                let next = path.steps.get(index + 1);
-                &path.coefficients
-                    [step.first..next.map_or(path.coefficients.len(), |own| own.first)]
+                let next = steps.get(index + 1);
+                &coefficients[step.first..next.map_or(coefficients.len(), |own| own.first)]
             }
         };
         StepSeries { step, states: path.states, order: path.order, coefficients }
@@ -308,7 +321,8 @@ impl<'a> StepReader<'a> {
 
     /// Computes the coefficients of a step from its point of expansion.
     fn compute(&mut self, index: usize) {
-        let TaylorSteps { states, order, steps, points, .. } = self.path;
+        let TaylorSteps { states, order, lists, .. } = self.path;
+        let PathLists { steps, points, .. } = &**lists;
         let step = steps[index];
         self.computed.clear();
         let own = self.recurrences.get_or_insert_with(|| {

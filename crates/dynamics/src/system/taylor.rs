@@ -315,7 +315,6 @@ pub(super) struct TaylorRun<'a> {
     /// The time since the start.
     time: f64,
     steps: TaylorSteps,
-    occurrences: Vec<EventCrossing>,
     /// Number of consecutive steps that returned to a corner at once.
     stuck: usize,
     /// The corner at which the last step ended, and the speed of its argument there.
@@ -412,7 +411,6 @@ impl<'a> TaylorRun<'a> {
             duration: end - start,
             time: 0.0,
             steps,
-            occurrences: vec![],
             stuck: 0,
             met: None,
             is_open: false,
@@ -422,19 +420,19 @@ impl<'a> TaylorRun<'a> {
 
     /// Returns the path of a run that has ended, and its memory.
     fn finish(mut self, reason: PathEnd) -> (Path, Box<RunMemory>) {
+        let states = &self.memory.values[..self.system.state.len()];
         if self.steps.count() == 0 {
             // A run that ended at its start gets one step of length zero.
-            let states = self.memory.values[..self.system.state.len()].to_vec();
             self.steps = TaylorSteps::at_rest(states);
+        } else {
+            self.steps.lists.last.extend_from_slice(states);
         }
         let on_side = |signs: &[f64]| self.expansions.on_side(self.system, self.events, signs);
         self.steps.finish(self.start, self.memory.root_signs.len(), on_side);
         let path = Path {
-            last: self.memory.values[..self.system.state.len()].to_vec(),
             end: if reason == PathEnd::Reached { self.end } else { self.start + self.time },
             motion: PathRepresentation::Taylor { steps: self.steps, start: self.start },
             reason,
-            occurrences: self.occurrences,
         };
         (path, self.memory)
     }
@@ -589,7 +587,7 @@ impl<'a> TaylorRun<'a> {
             time: start + (time + self.memory.expansion.elapsed(*place)),
             rising: *rising,
         });
-        self.occurrences.extend(crossings);
+        self.steps.lists.occurrences.extend(crossings);
         self.memory.met = met;
         let series = (0..self.system.state.len()).map(|state| self.memory.expansion.state(state));
         let point = ExpansionPoint {
@@ -635,7 +633,7 @@ impl<'a> TaylorRun<'a> {
     /// Takes the states at the end of a step, and keeps those before it.
     fn remember(&mut self, length: f64) {
         let last = &mut self.memory.last;
-        (last.length, last.occurrences) = (length, self.occurrences.len());
+        (last.length, last.occurrences) = (length, self.steps.lists.occurrences.len());
         std::mem::swap(&mut last.values, &mut self.memory.values);
         self.memory.values.clear();
         self.memory.values.extend(self.memory.at_end.iter().map(|sums| sums.value[0]));
@@ -731,7 +729,7 @@ impl<'a> TaylorRun<'a> {
         self.memory.values.clone_from(&last.values);
         self.memory.signs.clone_from(&last.signs);
         self.memory.expansion.set_sides(&last.sides);
-        self.occurrences.truncate(last.occurrences);
+        self.steps.lists.occurrences.truncate(last.occurrences);
         self.halvings += 1;
     }
 }

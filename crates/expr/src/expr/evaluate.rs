@@ -249,16 +249,23 @@ impl CompiledList {
         }
     }
 
-    /// Writes the values as [`CompiledList::call`] does, in memory of its own: on the stack, unless the list
-    /// is long.
-    pub fn call_once(&self, arguments: &[f64], values: &mut [f64]) {
+    /// Writes the values as [`CompiledList::call`] does at the arguments in these lists, one after the other, in
+    /// memory of its own: on the stack, unless the list is long.
+    pub fn call_once(&self, arguments: &[&[f64]], values: &mut [f64]) {
         const SHORT: usize = 32;
-        let size = self.list.size();
-        if size > SHORT || arguments.len() != self.list.argument_count {
-            return self.call(arguments, &mut vec![], values);
+        let count: usize = arguments.iter().map(|own| own.len()).sum();
+        if self.list.size() > SHORT || count != self.list.argument_count {
+            return self.call(&arguments.concat(), &mut vec![], values);
         }
         let mut scratch = [0.0; SHORT];
-        self.list.run(arguments, &mut scratch);
+        let mut first = 0;
+        for own in arguments.iter().chain([&self.list.constants.as_slice()]) {
+            if !own.is_empty() {
+                scratch[first..first + own.len()].copy_from_slice(own);
+                first += own.len();
+            }
+        }
+        self.list.run_instructions(&mut scratch);
         for (value, result) in values.iter_mut().zip(&self.results) {
             *value = scratch[*result];
         }
@@ -322,6 +329,13 @@ impl InstructionList {
         let constants_end = arguments.len() + self.constants.len();
         values[..arguments.len()].copy_from_slice(arguments);
         values[arguments.len()..constants_end].copy_from_slice(&self.constants);
+        self.run_instructions(values);
+    }
+
+    /// Computes the result of every operation, behind the arguments and the constants.
+    #[inline]
+    fn run_instructions(&self, values: &mut [f64]) {
+        let constants_end = self.argument_count + self.constants.len();
         for (offset, instruction) in self.instructions.iter().enumerate() {
             values[constants_end + offset] = instruction.value(values);
         }

@@ -13,8 +13,8 @@
 use std::collections::BTreeMap;
 
 use super::events::{BeforeEvents, CompiledEvents, EventRecord, GuardState};
-use super::hold::{IDLE, Stretch};
-use super::walls::{WallEvent, WallRecord};
+use super::hold::{IDLE, StretchEnd};
+use super::walls::{WallEvent, WallMemory, WallRecord};
 use super::{Ready, Sampled, TrajectoryError, TrajectoryRequest, TrajectorySegment};
 use crate::system::{Integrator, Path, PathEnd, Solver};
 
@@ -37,19 +37,43 @@ pub(super) struct EventRun<'a> {
     /// The reason why it has ended; `None` while it goes on.
     reason: Option<PathEnd>,
     pieces: Vec<TrajectorySegment>,
+    keeping: PieceKeeping,
     record: WallRecord,
     guards: Vec<GuardState>,
     events: EventRecord,
     /// States in some places of the last stretches, and memory for those in one of them.
     samples: Sampled,
     sampled: Vec<f64>,
-    /// Memory for the gap of each wall.
-    gaps: Vec<f64>,
+    /// Whether the motion is in front of all walls in these places.
+    is_in_front: bool,
+    /// Memory for the values at walls.
+    memory: WallMemory,
+}
+
+/// The pieces of a motion that are kept while it is followed.
+#[derive(Clone, Debug)]
+pub(super) enum PieceKeeping {
+    /// All of them.
+    All,
+    /// Those that end where the motion is; of the earlier ones the least and the greatest value of each
+    /// coordinate from the time `after` of the course on.
+    LastAndRanges(Vec<[f64; 2]>),
+    /// Those that end where the motion is.
+    Last,
+}
+
+impl PieceKeeping {
+    /// The last pieces, and the ranges of this many coordinates on the earlier ones.
+    pub(super) fn ranges(coordinates: usize) -> Self {
+        Self::LastAndRanges(vec![[f64::INFINITY, f64::NEG_INFINITY]; coordinates])
+    }
 }
 
 /// The pieces of a motion that has ended, the reason, and the impacts and events on its way.
 pub(super) struct RunEnd {
     pub(super) pieces: Vec<TrajectorySegment>,
+    /// The ranges of the coordinates on pieces that are not kept; none if all are.
+    pub(super) earlier: Vec<[f64; 2]>,
     pub(super) reason: PathEnd,
     pub(super) walls: WallRecord,
     pub(super) events: EventRecord,
@@ -68,9 +92,9 @@ impl<'a> EventRun<'a> {
     ) -> Result<Self, TrajectoryError> {
         let mut run = Self::in_flight(course, flight, (from, state), integrator);
         if let Some(walls) = &flight.walls {
-            let (state, record) = (&mut run.state, &mut run.record);
+            let (state, record, memory) = (&mut run.state, &mut run.record, &mut run.memory);
             walls.check_start(from, state)?;
-            run.resting = walls.settle(from, state, WallEvent::Start, &[], &[], record);
+            run.resting = walls.settle(from, state, WallEvent::Start, &[], &[], (record, memory));
             run.largest = walls.gaps(from, state);
             // The account begins behind an impact at the start.
             if let Some(work) = walls.work {
@@ -99,7 +123,7 @@ impl<'a> EventRun<'a> {
         reason: PathEnd,
     ) -> Self {
         let mut run = Self::in_flight(course, flight, (from, state), integrator);
-        let path = Path::at_instant(from, run.state.clone(), reason);
+        let path = Path::at_instant(from, &run.state, reason);
         run.pieces.push(TrajectorySegment { from, path, layout: None, recorded: 0 });
         run.end(reason);
         run
@@ -126,13 +150,20 @@ impl<'a> EventRun<'a> {
             steps: 0,
             reason: None,
             pieces: vec![],
+            keeping: PieceKeeping::All,
             record: WallRecord::default(),
             guards: flight.events.as_ref().map_or(vec![], CompiledEvents::guards),
             events: EventRecord::default(),
             samples: Sampled::default(),
             sampled: vec![],
-            gaps: vec![],
+            is_in_front: true,
+            memory: WallMemory::default(),
         }
+    }
+
+    /// Keeps only some of the pieces from here on.
+    pub(super) fn keep(&mut self, keeping: PieceKeeping) {
+        self.keeping = keeping;
     }
 
     /// Carries out the events at this instant and the impacts that they cause, and sets what is watched from
@@ -145,14 +176,15 @@ impl<'a> EventRun<'a> {
         events: &CompiledEvents,
         before: BeforeEvents,
     ) -> Result<(), TrajectoryError> {
-        let (from, largest, record) = (self.from, &self.largest, &mut self.record);
-        let resting = &mut self.resting;
+        let (from, largest, resting) = (self.from, &self.largest, &mut self.resting);
+        let (record, memory) = (&mut self.record, &mut self.memory);
         let impacts = |state: &mut [f64]| {
             let Some(walls) = &self.flight.walls else { return Ok(()) };
             if let Some((gap, value)) = walls.behind(from, state) {
                 return Err(TrajectoryError::EventBehindWall { gap, value, time: from });
             }
-            *resting = walls.settle(from, state, WallEvent::Start, resting, largest, record);
+            let (event, records) = (WallEvent::Start, (&mut *record, &mut *memory));
+            *resting = walls.settle(from, state, event, resting, largest, records);
             Ok(())
         };
         let state = &mut self.state;
@@ -205,29 +237,34 @@ impl<'a> EventRun<'a> {
     /// [`TrajectoryError`].
     pub(super) fn advance(&mut self, path: Option<Path>) -> Result<(), TrajectoryError> {
         self.prepare()?;
-        let state = std::mem::take(&mut self.state);
-        let Stretch { pieces: stretch, reason, last } =
-            self.course.pieces(self.equations(), path, self.from, state, self.integrator)?;
+        let first = self.pieces.len();
+        // The state at its start becomes that at its end.
+        let (flight, course) = (self.flight, self.course);
+        let equations = self.rest.get(&self.resting).unwrap_or(flight);
+        let start = (self.from, &mut self.state);
+        let StretchEnd { reason, has_states } =
+            course.follow_stretch(equations, path, start, self.integrator, &mut self.pieces)?;
+        let stretch = &self.pieces[first..];
         self.steps += stretch.iter().map(|piece| piece.path.step_count()).sum::<usize>();
         let end = stretch.last().map_or(self.from, TrajectorySegment::end);
         let recorded = stretch.last().map_or(0, |piece| piece.recorded);
-        let flight = self.flight;
-        self.take_samples(&stretch);
-        let passed = self.has_passed_wall(end, last.as_deref());
-        let missed = match (&flight.events, &last) {
-            (Some(events), Some(last)) => {
-                events.note_largest(end, last, &mut self.guards);
-                !matches!(reason, PathEnd::Event(_)) && events.missed(end, last, &self.guards)
+        self.take_samples(first);
+        let passed = self.has_passed_wall(end, has_states);
+        let missed = match &flight.events {
+            Some(events) if has_states => {
+                events.note_largest(end, &self.state, &mut self.guards);
+                !matches!(reason, PathEnd::Event(_))
+                    && events.missed(end, &self.state, &self.guards)
             }
             _ => false,
         };
-        self.pieces.extend(stretch);
+        self.leave_earlier_pieces(end);
         if passed || missed {
             let passed_wall = if passed { PathEnd::PassesWall } else { PathEnd::EventsAccumulate };
             self.reason = Some(passed_wall);
             return Ok(());
         }
-        let (Some(last), PathEnd::Event(event)) = (last, reason) else {
+        let (true, PathEnd::Event(event)) = (has_states, reason) else {
             self.reason = Some(reason);
             return Ok(());
         };
@@ -242,7 +279,7 @@ impl<'a> EventRun<'a> {
             });
             return Ok(());
         }
-        (self.from, self.state) = (end, last);
+        self.from = end;
         let guards = &mut self.guards;
         let before =
             flight.events.as_ref().map(|events| events.before(end, &self.state, reached, guards));
@@ -251,9 +288,9 @@ impl<'a> EventRun<'a> {
                 true => WallEvent::Released(guard),
                 false => WallEvent::Hit(guard),
             };
-            let (largest, record) = (&self.largest, &mut self.record);
+            let (largest, records) = (&self.largest, (&mut self.record, &mut self.memory));
             self.resting =
-                walls.settle(end, &mut self.state, event, &self.resting, largest, record);
+                walls.settle(end, &mut self.state, event, &self.resting, largest, records);
         }
         match (&flight.events, before) {
             (Some(events), Some(before)) => self.take_events(events, before),
@@ -261,17 +298,34 @@ impl<'a> EventRun<'a> {
         }
     }
 
-    /// Takes the states in some places of these stretches, those at their ends not among them, and raises the
-    /// largest gaps of the walls and sizes of the guards to those there.
-    fn take_samples(&mut self, stretch: &[TrajectorySegment]) {
+    /// Leaves the pieces that end before this time, if not all are kept.
+    fn leave_earlier_pieces(&mut self, end: f64) {
+        if matches!(self.keeping, PieceKeeping::All) {
+            return;
+        }
+        let earlier = self.pieces.partition_point(|piece| piece.end() < end);
+        let (count, after) = (self.course.coordinates.len(), self.course.after);
+        for piece in self.pieces.drain(..earlier).filter(|piece| piece.end() >= after) {
+            if let PieceKeeping::LastAndRanges(ranges) = &mut self.keeping {
+                piece.extend_ranges(ranges, count, after);
+            }
+        }
+    }
+
+    /// Takes the states in some places of the pieces from this one on, those at their ends not among them, and
+    /// raises the largest gaps of the walls and sizes of the guards to those there.
+    fn take_samples(&mut self, first: usize) {
         const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
         let Ready { walls, events, states, .. } = self.flight;
         self.samples.clear();
+        self.is_in_front = true;
         if walls.is_none() && events.is_none() {
             return;
         }
-        self.samples.columns.resize(states.len(), vec![]);
-        for piece in stretch {
+        if self.samples.columns.len() != states.len() {
+            self.samples.columns.resize(states.len(), vec![]);
+        }
+        for piece in &self.pieces[first..] {
             let times = PLACES.map(|share| piece.from + share * (piece.end() - piece.from));
             piece.sample(&times, &mut self.samples);
         }
@@ -279,7 +333,8 @@ impl<'a> EventRun<'a> {
             let time = self.samples.times[index];
             self.samples.read_row(index, &mut self.sampled);
             if let Some(walls) = walls {
-                walls.note_largest(time, &self.sampled, &mut self.largest, &mut self.gaps);
+                let (largest, memory) = (&mut self.largest, &mut self.memory);
+                self.is_in_front &= walls.note_largest(time, &self.sampled, largest, memory);
             }
             if let Some(events) = events {
                 events.note_largest(time, &self.sampled, &mut self.guards);
@@ -287,17 +342,19 @@ impl<'a> EventRun<'a> {
         }
     }
 
-    /// Whether the motion is behind a wall in one of the places of its samples, or at the end.
-    fn has_passed_wall(&mut self, end: f64, last: Option<&[f64]>) -> bool {
+    /// Whether the motion is behind a wall in one of the places of its samples, or at the end if its state
+    /// there is known.
+    fn has_passed_wall(&mut self, end: f64, has_states: bool) -> bool {
         let Some(walls) = &self.flight.walls else { return false };
-        let (largest, gaps) = (&self.largest, &mut self.gaps);
-        if last.is_some_and(|last| walls.passed(end, last, largest, gaps)) {
+        let (largest, memory) = (&self.largest, &mut self.memory);
+        if has_states && walls.passed(end, &self.state, largest, memory) {
             return true;
         }
-        (0..self.samples.times.len()).any(|index| {
-            self.samples.read_row(index, &mut self.sampled);
-            walls.passed(self.samples.times[index], &self.sampled, largest, gaps)
-        })
+        !self.is_in_front
+            && (0..self.samples.times.len()).any(|index| {
+                self.samples.read_row(index, &mut self.sampled);
+                walls.passed(self.samples.times[index], &self.sampled, largest, memory)
+            })
     }
 
     /// Goes on to the end.
@@ -319,6 +376,10 @@ impl<'a> EventRun<'a> {
             rest.until = end.max(rest.from);
         }
         let reason = self.reason.unwrap_or(PathEnd::Interrupted);
-        RunEnd { pieces, reason, walls: record, events: self.events }
+        let earlier = match self.keeping {
+            PieceKeeping::LastAndRanges(ranges) => ranges,
+            PieceKeeping::All | PieceKeeping::Last => vec![],
+        };
+        RunEnd { pieces, earlier, reason, walls: record, events: self.events }
     }
 }

@@ -103,36 +103,35 @@ impl Layout {
     }
 }
 
-/// The motion from one impact or event to the next, or to its end.
-pub(super) struct Stretch {
-    pub(super) pieces: Vec<TrajectorySegment>,
+/// The end of a motion from one impact or event to the next, or to its end.
+pub(super) struct StretchEnd {
     /// The reason why it ends.
     pub(super) reason: PathEnd,
-    /// The states at its end.
-    pub(super) last: Option<Vec<f64>>,
+    /// Whether the states at its end are known.
+    pub(super) has_states: bool,
 }
 
 impl TrajectoryRequest {
-    /// The motion segment by segment, each by the equations as typed or with surfaces held by
-    /// friction, until a guard falls through zero or the motion ends; and the reason why. The first
+    /// Adds the motion to the pieces segment by segment, each by the equations as typed or with surfaces held by
+    /// friction, until a guard falls through zero or the motion ends; the state becomes that at its end. The first
     /// segment, by the equations as typed, is given if it has been followed.
-    pub(super) fn pieces(
+    pub(super) fn follow_stretch(
         &self,
         equations: &Ready,
         first: Option<Path>,
-        from: f64,
-        state: Vec<f64>,
+        (from, state): (f64, &mut Vec<f64>),
         integrator: Integrator,
-    ) -> Result<Stretch, TrajectoryError> {
+        pieces: &mut Vec<TrajectorySegment>,
+    ) -> Result<StretchEnd, TrajectoryError> {
         let options = self.options(integrator);
-        let (mut pieces, mut regimes) = (Vec::with_capacity(1), Regimes::new());
-        let (mut first, mut from, mut state) = (first, from, state);
+        let mut regimes = Regimes::new();
+        let (mut first, mut from) = (first, from);
         if equations.static_friction > 1.0 {
-            let found = surfaces(equations, from, &state)?;
-            regimes = regimes_at(equations, found, from, &state, None)?.unwrap_or_default();
+            let found = surfaces(equations, from, state)?;
+            regimes = regimes_at(equations, found, from, state, None)?.unwrap_or_default();
         }
         let (mut idle, mut holds) = (0, 0);
-        let mut last = None;
+        let mut has_states = false;
         let reason = loop {
             let piece = match regimes.iter().all(|(_, regime)| *regime == SurfaceRegime::Typed) {
                 true => TrajectorySegment {
@@ -141,25 +140,23 @@ impl TrajectoryRequest {
                     from,
                     path: match first.take() {
                         Some(first) => first,
-                        None => equations.solver.solve([from, self.duration], &state)?,
+                        None => equations.solver.solve([from, self.duration], state)?,
                     },
                 },
-                false => match self.stretch(equations, &regimes, from, &mut state, &options)? {
+                false => match self.stretch(equations, &regimes, from, state, &options)? {
                     Some(piece) => piece,
                     None => break PathEnd::Sticks,
                 },
             };
             let (end, reason) = (piece.end(), piece.path.reason());
-            last = piece.last_states();
+            has_states = piece.write_last_states(state);
             // The events before those of the surfaces.
             let others = piece.recorded + equations.guards.len();
             holds += usize::from(piece.is_held());
             pieces.push(piece);
-            let Some(here) = &last else { break reason };
-            if matches!(reason, PathEnd::Event(event) if event < others) {
+            if !has_states || matches!(reason, PathEnd::Event(event) if event < others) {
                 break reason;
             }
-            state.clone_from(here);
             // Other surfaces can take over only if there are more frictions than needed.
             let hit = match reason {
                 PathEnd::Event(event) => hit(&regimes, event - others),
@@ -171,9 +168,9 @@ impl TrajectoryRequest {
                 reason => break reason,
             };
             if !released {
-                regimes = match surfaces(equations, end, &state)? {
+                regimes = match surfaces(equations, end, state)? {
                     found if found.is_empty() => break PathEnd::Sticks,
-                    found => match regimes_at(equations, found, end, &state, hit.as_ref())? {
+                    found => match regimes_at(equations, found, end, state, hit.as_ref())? {
                         Some(regimes) => regimes,
                         None => break PathEnd::Sticks,
                     },
@@ -185,7 +182,7 @@ impl TrajectoryRequest {
             }
             from = end;
         };
-        Ok(Stretch { pieces, reason, last })
+        Ok(StretchEnd { reason, has_states })
     }
 
     /// The motion from a time on, until a held surface is released or one that was left is reached
@@ -251,7 +248,7 @@ impl TrajectoryRequest {
         let path = system.solve([from, self.duration], &start, &events, options);
         Ok(path.ok().map(|path| TrajectorySegment {
             recorded,
-            layout: sliding.held.then_some(layout),
+            layout: sliding.held.then(|| Box::new(layout)),
             from,
             path,
         }))

@@ -1,6 +1,6 @@
 //! A problem whose equations are made ready once, to be followed from many starts.
 
-use super::event_run::{EventRun, RunEnd};
+use super::event_run::{EventRun, PieceKeeping, RunEnd};
 use super::walls::WallRecord;
 use super::{Ready, TrajectoryError, TrajectoryRequest};
 use crate::system::{Integrator, PathEnd};
@@ -61,6 +61,7 @@ impl PreparedTrajectory {
     ) -> Result<TrajectoryEnd, TrajectoryError> {
         let course = TrajectoryRequest { duration: to, ..self.course.clone() };
         let mut run = EventRun::new(&course, &self.ready, (from, start.to_vec()), self.integrator)?;
+        run.keep(PieceKeeping::Last);
         run.complete()?;
         let RunEnd { pieces, reason, walls, .. } = run.finish();
         let last = pieces.last().and_then(|piece| piece.states_at(piece.end()));

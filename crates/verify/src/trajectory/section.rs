@@ -210,21 +210,25 @@ impl Trajectory {
 
     /// The least and the greatest value of each coordinate from the time `after` of the course on.
     pub fn extremes(&self) -> Vec<[f64; 2]> {
-        let from = self.course.after.min(self.end());
-        let count = self.course.coordinates.len();
-        let of_coordinate = |index: usize| {
-            let pieces = self.pieces.iter().filter(|piece| piece.end() >= from);
-            let ranges =
-                pieces.map(|piece| piece.range([index, count + index], from.max(piece.from)));
-            ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], range| {
-                [least.min(range[0]), greatest.max(range[1])]
-            })
-        };
-        (0..count).map(of_coordinate).collect()
+        let (from, count) = (self.course.after.min(self.end()), self.course.coordinates.len());
+        let mut ranges = self.earlier.clone();
+        ranges.resize(count, [f64::INFINITY, f64::NEG_INFINITY]);
+        for piece in self.pieces.iter().filter(|piece| piece.end() >= from) {
+            piece.extend_ranges(&mut ranges, count, from);
+        }
+        ranges
     }
 }
 
 impl TrajectorySegment {
+    /// Extends the ranges of the coordinates, of which there are so many, by their values from a time on.
+    pub(super) fn extend_ranges(&self, ranges: &mut [[f64; 2]], count: usize, from: f64) {
+        for (index, range) in ranges.iter_mut().enumerate() {
+            let [least, greatest] = self.range([index, count + index], from.max(self.from));
+            *range = [range[0].min(least), range[1].max(greatest)];
+        }
+    }
+
     /// The least and the greatest value of a coordinate from a time on, at both ends and where it turns.
     /// A coordinate without a series turns between two of many values with velocities of opposite signs.
     fn range(&self, [coordinate, velocity]: [usize; 2], from: f64) -> [f64; 2] {

@@ -68,16 +68,7 @@ impl StateFunctions {
         state: &[f64],
         values: &mut [f64],
     ) {
-        const SHORT: usize = 16;
-        let (state, numbers) = (&state[..self.states], &self.numbers);
-        let count = 1 + state.len() + numbers.len();
-        if count > SHORT {
-            return list.call_once(&[&[time], state, numbers].concat(), values);
-        }
-        let mut arguments = [time; SHORT];
-        arguments[1..=state.len()].copy_from_slice(state);
-        arguments[1 + state.len()..count].copy_from_slice(numbers);
-        list.call_once(&arguments[..count], values);
+        list.call_once(&[&[time], &state[..self.states], &self.numbers], values);
     }
 
     /// The energy of a state; `None` if there is none.

@@ -6,6 +6,7 @@
 //! were begun. With a [`Section`](super::Section) once a period, the points of a bifurcation
 //! diagram.
 
+use super::event_run::PieceKeeping;
 use super::{Crossing, PoincareSection, TrajectoryError, TrajectoryRequest};
 use crate::parallel::{par_map, threads};
 use crate::symbol::Symbol;
@@ -83,6 +84,11 @@ pub fn sweep(
     };
     // The equations are compiled once, if possible, and take other numbers for each motion.
     let ready = grid.first().and_then(|first| at(first).ready(Integrator::Taylor).ok());
+    // The states on a section are those of pieces; the least and the greatest values are found on the way.
+    let keeping = match course.section {
+        Some(_) => PieceKeeping::All,
+        None => PieceKeeping::ranges(course.coordinates.len()),
+    };
     // Motions are integrated side by side on each thread, and on all threads.
     let size = grid.len().div_ceil(threads()).clamp(1, LANES);
     let numbered: Vec<_> = grid.iter().enumerate().collect();
@@ -91,7 +97,7 @@ pub fn sweep(
             return Ok(vec![]);
         }
         let courses = group.iter().map(|(_, values)| at(values)).collect();
-        let motions = TrajectoryRequest::followed_together(courses, ready.as_ref());
+        let motions = TrajectoryRequest::followed_together(courses, ready.as_ref(), &keeping);
         let mut swept = Vec::with_capacity(group.len());
         for ((number, values), motion) in group.iter().zip(motions) {
             let motion = motion.map_err(|error| (*number, error))?;

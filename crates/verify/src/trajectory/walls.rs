@@ -118,6 +118,18 @@ pub(super) struct CompiledWalls {
     moving: Vec<usize>,
 }
 
+/// Memory for what impacts on walls need.
+#[derive(Clone, Debug, Default)]
+pub(super) struct WallMemory {
+    /// The values at each wall.
+    walls: Vec<AtWall>,
+    /// The gap of each wall.
+    gaps: Vec<f64>,
+    /// The walls that a motion touches at an instant, and those that it hits.
+    touched: Vec<usize>,
+    struck: Vec<usize>,
+}
+
 /// The values of the functions of a wall at a state.
 #[derive(Clone, Debug, Default)]
 struct AtWall {
@@ -218,25 +230,21 @@ impl CompiledWalls {
     }
 
     fn at(&self, wall: usize, time: f64, state: &[f64]) -> AtWall {
-        let [coordinates, _] = self.counts;
-        let mut at = AtWall { values: vec![0.0; 4 + 2 * coordinates], ..AtWall::default() };
+        let mut at = AtWall::default();
         self.refresh(&mut at, wall, time, state);
         at
     }
 
-    /// The values at all walls at a state.
-    fn at_each(&self, time: f64, state: &[f64]) -> Vec<AtWall> {
-        (0..self.walls.len()).map(|wall| self.at(wall, time, state)).collect()
-    }
-
     /// Takes the values at a wall at another state.
     fn refresh(&self, at: &mut AtWall, wall: usize, time: f64, state: &[f64]) {
+        at.values.resize(4 + 2 * self.counts[0], 0.0);
         self.evaluation.write_values(&self.functions[wall], time, state, &mut at.values);
         [at.gap, at.rate, at.free, at.jerk] = [0, 1, 2, 3].map(|index| at.values[index]);
     }
 
     /// Takes the values at all walls at another state.
-    fn refresh_each(&self, walls: &mut [AtWall], time: f64, state: &[f64]) {
+    fn refresh_each(&self, walls: &mut Vec<AtWall>, time: f64, state: &[f64]) {
+        walls.resize_with(self.walls.len(), AtWall::default);
         for (wall, at) in walls.iter_mut().enumerate() {
             self.refresh(at, wall, time, state);
         }
@@ -259,19 +267,20 @@ impl CompiledWalls {
         largest.max(position).max(flight)
     }
 
-    /// Whether a motion is behind a wall, beyond rounding; `gaps` is memory for a number for each.
+    /// Whether a motion is behind a wall, beyond rounding.
     pub(super) fn passed(
         &self,
         time: f64,
         state: &[f64],
         largest: &[f64],
-        gaps: &mut Vec<f64>,
+        WallMemory { walls, gaps, .. }: &mut WallMemory,
     ) -> bool {
         self.write_gaps(time, state, gaps);
         if gaps.iter().all(|gap| *gap >= 0.0) {
             return false;
         }
-        let size = self.size_of_gaps(&self.at_each(time, state), state, largest);
+        self.refresh_each(walls, time, state);
+        let size = self.size_of_gaps(walls, state, largest);
         gaps.iter().any(|gap| *gap < -BEHIND * size)
     }
 
@@ -323,14 +332,16 @@ impl CompiledWalls {
         event: WallEvent,
         resting: &[usize],
         largest: &[f64],
-        record: &mut WallRecord,
+        (record, memory): (&mut WallRecord, &mut WallMemory),
     ) -> Vec<usize> {
         let [coordinates, states] = self.counts;
-        let mut touched: Vec<usize> = resting.to_vec();
-        let mut struck: Vec<usize> = Vec::new();
+        let WallMemory { walls, touched, struck, .. } = memory;
+        touched.clear();
+        touched.extend_from_slice(resting);
+        struck.clear();
         let mut chatter: BTreeMap<usize, f64> = BTreeMap::new();
-        let mut walls = self.at_each(time, state);
-        let size_of_gaps = self.size_of_gaps(&walls, state, largest);
+        self.refresh_each(walls, time, state);
+        let size_of_gaps = self.size_of_gaps(walls, state, largest);
         for _ in 0..MOST_AT_ONE_TIME {
             let speed =
                 state[coordinates..states].iter().fold(0.0_f64, |most, v| most.max(v.abs()));
@@ -367,24 +378,26 @@ impl CompiledWalls {
                 record.order_matters.get_or_insert(time);
             }
             struck.push(wall);
-            self.refresh_each(&mut walls, time, state);
+            self.refresh_each(walls, time, state);
         }
         // The state is put onto the walls that were hit, which rounding has left a little off.
         for wall in struck.iter().chain(resting) {
-            self.project(&walls[*wall], state);
-            self.refresh_each(&mut walls, time, state);
+            if walls[*wall].gap != 0.0 {
+                self.project(&walls[*wall], state);
+                self.refresh_each(walls, time, state);
+            }
         }
         // A start a little behind a wall is put onto it: a gap that opens from less than nothing may fall again
         // without having passed through zero.
         for wall in touched.iter().filter(|_| event == WallEvent::Start) {
             if walls[*wall].gap < 0.0 {
                 self.project(&walls[*wall], state);
-                self.refresh_each(&mut walls, time, state);
+                self.refresh_each(walls, time, state);
             }
         }
         // The force of a wall that was released is zero, up to rounding.
         touched.retain(|wall| event != WallEvent::Released(*wall));
-        let bearing = self.bearing(time, state, &touched, &walls, |wall| {
+        let bearing = self.bearing(time, state, touched, walls, |wall| {
             chatter.contains_key(&wall) || resting.contains(&wall)
         });
         for wall in &bearing {
@@ -520,18 +533,22 @@ impl CompiledWalls {
         AtWall { free: if sign < 0.0 { -f64::MIN_POSITIVE } else { 0.0 }, ..at }
     }
 
-    /// Raises the largest gap of each wall to those at a state; `gaps` is memory for as many numbers.
+    /// Raises the largest gap of each wall to those at a state. Returns whether the motion is in front of all
+    /// walls there.
     pub(super) fn note_largest(
         &self,
         time: f64,
         state: &[f64],
         largest: &mut [f64],
-        gaps: &mut Vec<f64>,
-    ) {
+        WallMemory { gaps, .. }: &mut WallMemory,
+    ) -> bool {
         self.write_gaps(time, state, gaps);
+        let mut is_in_front = true;
         for (largest, gap) in largest.iter_mut().zip(gaps) {
             *largest = largest.max(*gap);
+            is_in_front &= *gap >= 0.0;
         }
+        is_in_front
     }
 
     /// The gap of each wall at a state.

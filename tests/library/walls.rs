@@ -391,3 +391,12 @@ fn the_exponent_of_a_cycle_is_that_of_its_multipliers() {
     let expected = 0.8_f64.ln() / (2.0 * PI) - 0.05;
     assert!((exponent.value - expected).abs() < 0.01, "{exponent:?} {expected}");
 }
+
+/// Between two walls that leave no room there is no motion: it ends where it begins, not behind one of them.
+#[test]
+fn walls_that_leave_no_room_end_a_motion_where_it_begins() {
+    let course = course("x'' + x = 0", &[("x < 1", "1/2"), ("x > 1", "1/2")], "");
+    let motion = begun(course, &[("x", 1.0)], 3.0).follow().expect("a motion");
+    assert_eq!((motion.reason(), motion.end()), (PathEnd::PassesWall, 0.0));
+    assert_eq!(motion.extremes(), [[1.0, 1.0]]);
+}

@@ -258,6 +258,10 @@ impl<'a> EventRun<'a> {
             }
             _ => false,
         };
+        if passed {
+            // The stretch behind the wall is no part of the motion.
+            self.take_back(first);
+        }
         self.leave_earlier_pieces(end);
         if passed || missed {
             let passed_wall = if passed { PathEnd::PassesWall } else { PathEnd::EventsAccumulate };
@@ -295,6 +299,17 @@ impl<'a> EventRun<'a> {
         match (&flight.events, before) {
             (Some(events), Some(before)) => self.take_events(events, before),
             _ => Ok(()),
+        }
+    }
+
+    /// Leaves out the pieces from this one on; a motion that has no other ends where it begins.
+    fn take_back(&mut self, first: usize) {
+        let start = self.pieces.get(first).and_then(|piece| piece.states_at(piece.from));
+        self.pieces.truncate(first);
+        if let (true, Some(start)) = (self.pieces.is_empty(), start) {
+            let (from, layout) = (self.from, None);
+            let path = Path::at_instant(from, &start, PathEnd::PassesWall);
+            self.pieces.push(TrajectorySegment { from, path, layout, recorded: 0 });
         }
     }
 

@@ -3,7 +3,7 @@
 
 use super::{Barrier, BarrierSide, Order, Problem, ProblemError, ReadingCommand, refused};
 use crate::expr::{Expr, parse_expression};
-use crate::impact::contact::ContactLaw;
+use crate::impact::contact::{ContactLaw, Dashpot};
 use crate::impact::hertz::{NotPositive, StiffnessDesign};
 use crate::impact::{
     CollisionError, ContactDamping, ContactLoss, ContactScales, Rule, Setup, Side, SpeedUnit,
@@ -61,7 +61,14 @@ impl TryFrom<&Problem> for Setup {
             );
         }
         let swing = swing(problem)?;
-        let force = force(problem)?;
+        let lossy = LossyLaw::from_problem(problem)?;
+        let has_dashpot = lossy.as_ref().is_some_and(|law| law.dashpot.is_some());
+        let force = match force(problem)? {
+            None if has_dashpot => {
+                Some(Expr::from(Symbol::new("gamma")) * Expr::from(Symbol::new("d")))
+            }
+            force => force,
+        };
         let given = ImpactValues::from_problem(problem, swing.as_ref(), force.is_some())?;
         let side = match problem.pendulum.side {
             Some(BarrierSide::Left) => Side::Left,
@@ -111,10 +118,11 @@ impl TryFrom<&Problem> for Setup {
             rule: linearisation(problem)?,
             contact_law: match contact.law.as_deref() {
                 None | Some(EVERY_LAW) => ContactLaw::default(),
+                Some(_) if lossy.is_some() => ContactLaw::default(),
                 Some(name) => name.parse()?,
             },
             every_contact_law: is_all(&contact.law) || is_all(&contact.linearisation),
-            loss: loss(problem, stiffness)?,
+            loss: loss(problem, lossy.as_ref(), stiffness)?,
             integrator_tolerance: problem.run.integrator_tolerance,
             step_limit: problem.run.step_limit,
             ..Self::default()
@@ -273,14 +281,61 @@ fn linearisation(problem: &Problem) -> Result<Rule, UnknownRule> {
     }
 }
 
+/// A law of a contact that loses energy, by its name: `hunt-crossley`, `kelvin-voigt restitution=0.8`.
+struct LossyLaw {
+    /// The name.
+    name: &'static str,
+    /// The dashpot; `None` for Hunt and Crossley.
+    dashpot: Option<Dashpot>,
+    /// The restitution that stands beside the name.
+    restitution: Option<f64>,
+}
+
+impl LossyLaw {
+    /// The law of the problem; `None` for one without loss.
+    ///
+    /// # Errors
+    /// Words beside the name that are not a restitution.
+    fn from_problem(problem: &Problem) -> Result<Option<Self>, ProblemError> {
+        let Some(text) = &problem.contact.law else { return Ok(None) };
+        let mut words = text.split_whitespace();
+        let first = words.next().unwrap_or_default();
+        let hunt_crossley = (ContactLoss::Damping(1.0).name(), None);
+        let dashpots = Dashpot::ALL.map(|dashpot| (dashpot.name(), Some(dashpot)));
+        let mut laws = std::iter::once(hunt_crossley).chain(dashpots);
+        let Some((name, dashpot)) = laws.find(|(name, _)| *name == first) else { return Ok(None) };
+        let mut restitution = None;
+        for word in words {
+            let value = word.strip_prefix("restitution=").and_then(|value| value.parse().ok());
+            let (Some(value), None) = (value, restitution) else {
+                return refused(format!(
+                    "`{word}` says nothing beside {name}: write \"{name} restitution=0.8\""
+                ));
+            };
+            restitution = Some(value);
+        }
+        Ok(Some(Self { name, dashpot, restitution }))
+    }
+}
+
 /// The loss in the contact.
-fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, ProblemError> {
+fn loss(
+    problem: &Problem,
+    lossy: Option<&LossyLaw>,
+    stiffness: f64,
+) -> Result<Option<ContactLoss>, ProblemError> {
     let contact = &problem.contact;
+    let beside = lossy.and_then(|law| law.restitution);
+    if beside.is_some() && contact.restitution.is_some() {
+        return refused(
+            "the restitution stands beside the law and in [contact] restitution: give it once",
+        );
+    }
     let losses = [
         ("mu", contact.mu),
         ("mu_over_gamma", contact.mu_over_gamma),
         ("lambda", contact.lambda),
-        ("restitution", contact.restitution),
+        ("restitution", contact.restitution.or(beside)),
         ("damping", contact.damping),
     ];
     let given: Vec<(&'static str, f64)> =
@@ -291,7 +346,14 @@ fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, Proble
         );
     }
     let (key, value) = match given[..] {
-        [] => return Ok(None),
+        [] => {
+            return match lossy {
+                Some(LossyLaw { name, .. }) => refused(format!(
+                    "the law {name} loses energy, and says not how much: write \"{name} restitution=0.8\""
+                )),
+                None => Ok(None),
+            };
+        }
         [one] => one,
         [(one, _), (other, _), ..] => {
             return refused(format!(
@@ -313,6 +375,14 @@ fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, Proble
     if !(value.is_finite() && value >= 0.0) {
         return no_damping();
     }
+    if let Some(LossyLaw { name, dashpot: Some(_), .. }) = lossy
+        && (!of_restitution || contact.at_speed.is_some())
+    {
+        let key = if of_restitution { "at_speed" } else { key };
+        return refused(format!(
+            "[contact] {key} says nothing beside {name}, whose restitution is the same at any speed: give that alone"
+        ));
+    }
     // This value means a contact without loss.
     if value == if of_restitution { 1.0 } else { 0.0 } {
         return Ok(None);
@@ -323,10 +393,16 @@ fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, Proble
         ));
     }
     let laws = [("law", &contact.law), ("linearisation", &contact.linearisation)];
-    if let Some((law, _)) = laws.into_iter().find(|(_, name)| name.is_some()) {
+    let without_loss = |(key, name): &(&str, &Option<String>)| {
+        name.is_some() && !(*key == "law" && lossy.is_some())
+    };
+    if let Some((law, _)) = laws.into_iter().find(without_loss) {
         return refused(format!(
             "[contact] {law} is that of a contact without loss: beside {key} the law is that of Hunt and Crossley, leave one of them out"
         ));
+    }
+    if let Some(LossyLaw { dashpot: Some(dashpot), .. }) = lossy {
+        return Ok(Some(ContactLoss::Dashpot { dashpot: *dashpot, restitution: value }));
     }
     if of_restitution && contact.at_speed.is_none() {
         return Ok(Some(ContactLoss::Restitution(value)));

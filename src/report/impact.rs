@@ -5,8 +5,8 @@ use super::solution::law_blocks;
 use super::{Block, Document, percent};
 use crate::audit::paper;
 use crate::decimal::{decimal, significant};
-use crate::impact::contact::ContactLaw;
 use crate::impact::contact::power_law::duration_factor;
+use crate::impact::contact::{ContactLaw, Dashpot};
 use crate::impact::{
     Attempt, ContactLoss, DerivedContact, Flight, Form, Impact, ImpactQuantity, ImpactSymbols,
     JudgedPhases, Modulus, PhaseReading, Setup, SiImpact, Side, YieldCheck,
@@ -117,6 +117,7 @@ pub(super) fn problem_blocks(
             ContactLoss::Restitution(_) => {
                 "for the restitution asked for, at the speed of the touch"
             }
+            ContactLoss::Dashpot { .. } => "for the restitution asked for, at any speed",
         };
         value(letters.damping, damping, Some(source))
     }));
@@ -280,6 +281,36 @@ fn law_of_contact<'a>(impact: &Impact, contact: &DerivedContact) -> Vec<Block<'a
                 ]),
                 _ => {}
             }
+            lines
+        }
+        DerivedContact::Spring(contact) => {
+            let damping = impact.letters.damping;
+            let zeta = decimal(contact.damping_ratio);
+            let mut lines = vec![
+                "the contact is a spring with a dashpot, the force of the swing left out of it:"
+                    .to_owned(),
+                format!("  d'' = -{} (d + {damping} d')", decimal(contact.stiffness)),
+                format!(
+                    "  zeta = {damping} sqrt({})/2 = {zeta} = cos b",
+                    decimal(contact.stiffness)
+                ),
+            ];
+            lines.push(match contact.dashpot {
+                Dashpot::Pulls => format!(
+                    "  e = exp(-pi cot b) = {}: it pulls on the way out, until d = 0",
+                    decimal(contact.restitution)
+                ),
+                Dashpot::DoesNotPull => format!(
+                    "  e = exp(-2 b cot b) = {}: it does not pull, and is left at the depth {damping} e v",
+                    decimal(contact.restitution)
+                ),
+            });
+            lines.push(format!(
+                "  greatest force {} at the depth {}, energy lost {} per unit of mass",
+                decimal(contact.peak_force),
+                decimal(contact.peak_depth),
+                decimal(contact.energy_lost)
+            ));
             lines
         }
         DerivedContact::Damped(contact) => {

@@ -5,7 +5,7 @@ use super::{Block, Document};
 use crate::certificate::{Enclosure, ImpactEnclosure, PowerLaw, SizeBounds};
 use crate::decimal::{exact_decimal, not_above_typed};
 use crate::exact::Rational;
-use crate::impact::{Impact, PhaseReading};
+use crate::impact::{ContactLoss, Impact, PhaseReading};
 use crate::verify::Verdict;
 
 /// An impact and its proved enclosures.
@@ -76,7 +76,12 @@ pub fn impact_certificate<'a>(report: &ImpactCertificateReport<'a>) -> Document<
         given.push(("exponent of the depth", exactly(&report.force.exponent)));
     }
     if let Some(damping) = report.damping {
-        given.push(("lambda, its damping: the force is times 1 + lambda d'", exactly(damping)));
+        let dashpot = report.impact.setup.loss.and_then(ContactLoss::dashpot);
+        let words = match dashpot {
+            None => "lambda, its damping: the force is times 1 + lambda d'",
+            Some(_) => "lambda, its damping: the force is stiffness (d + lambda d')",
+        };
+        given.push((words, exactly(damping)));
     }
     let proved = report.proved().into_iter();
     let proved = proved.map(|(name, enclosure)| (name, enclosed(enclosure))).collect();

@@ -647,6 +647,36 @@ fn laws_of_a_power_are_refused_where_there_is_none() {
     }
 }
 
+/// A hard spring with a dashpot gives the restitution asked for; one that does not pull lets go before.
+#[test]
+fn a_dashpot_has_the_restitution_asked_for_at_any_speed() {
+    use lindstedt::impact::contact::Dashpot;
+    for dashpot in Dashpot::ALL {
+        for (restitution, release) in [(0.1, -1.5), (0.5, -1.5), (0.5, -0.7), (0.95, -1.5)] {
+            let setup = Setup {
+                loss: Some(ContactLoss::Dashpot { dashpot, restitution }),
+                force: Some("gamma*d".parse().expect("a force")),
+                stiffness: 1e8,
+                release,
+                ..Setup::default()
+            };
+            let found = impact::solve(setup).expect("an impact");
+            let truth = found.truth.restitution();
+            assert!((truth / restitution - 1.0).abs() < 2e-3, "{dashpot:?}: {truth}");
+            let Some(DerivedContact::Spring(spring)) = &found.contact else { panic!("no spring") };
+            assert_eq!(spring.dashpot, dashpot);
+            assert!((spring.duration / found.truth.duration - 1.0).abs() < 2e-3);
+            assert_eq!(found.verdicts(0.02), [Verdict::Pass], "{dashpot:?} {restitution}");
+        }
+        let setup = Setup {
+            loss: Some(ContactLoss::Dashpot { dashpot, restitution: 0.5 }),
+            ..Setup::default()
+        };
+        let refused = impact::solve(setup).expect_err("no spring").to_string();
+        assert!(refused.contains(dashpot.name()) && refused.contains("gamma*d^(3/2)"), "{refused}");
+    }
+}
+
 #[test]
 fn the_restitution_asked_for_is_the_one_that_is_simulated() {
     for wanted in [0.05, 0.2, 0.5, 0.8, 0.95, 0.999] {

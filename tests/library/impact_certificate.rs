@@ -2,9 +2,11 @@
 //! variables, Runge-Kutta, and exact relations.
 
 use lindstedt::certificate::{
-    Enclosure, ImpactEnclosure, NotEnclosed, PowerLaw, enclose_impact, enclose_lossy_impact,
+    Enclosure, ImpactEnclosure, NotEnclosed, PowerLaw, enclose_dashpot_impact, enclose_impact,
+    enclose_lossy_impact,
 };
 use lindstedt::exact::{Rational, from_f64, to_f64};
+use lindstedt::impact::contact::Dashpot;
 use lindstedt::impact::{ContactLoss, Setup, solve};
 use num_traits::Signed as _;
 use proptest::prelude::*;
@@ -279,4 +281,51 @@ fn a_contact_that_loses_energy_is_proved() {
         &fraction(-1, 2),
     );
     assert_eq!(negative.expect_err("a gain"), NotEnclosed::Damping);
+}
+
+/// The harder a spring with a dashpot, the less the swing acts during the contact, whose restitution is then
+/// `exp(-pi zeta/sqrt(1 - zeta^2))`; Runge-Kutta agrees at every hardness.
+#[test]
+fn a_contact_with_a_dashpot_is_proved() {
+    let zeta = 0.2_f64;
+    let alone = (-std::f64::consts::PI * zeta / (1.0 - zeta * zeta).sqrt()).exp();
+    let errors = [1e4, 1e6, 1e8].map(|stiffness: f64| {
+        let setup = Setup {
+            stiffness,
+            force: Some("gamma*d".parse().expect("a force")),
+            loss: Some(ContactLoss::Dashpot { dashpot: Dashpot::Pulls, restitution: alone }),
+            ..Setup::default()
+        };
+        let solved = solve(setup).expect("an impact");
+        assert!((solved.damping / (2.0 * zeta / stiffness.sqrt()) - 1.0).abs() < 1e-12);
+        let numbers = [exact(stiffness), exact(solved.damping)];
+        let impact =
+            enclose_dashpot_impact(&fraction(3, 2), &fraction(323, 1000), &numbers[0], &numbers[1])
+                .expect("a proof");
+        for (quantity, (name, truth)) in solved.quantities().into_iter().zip(impact.in_order()) {
+            assert!(agrees(truth, quantity.runge_kutta, 1e-9), "{name} at {stiffness}: {truth:?}");
+        }
+        let (judged, _) = solved.losses().expect("a loss");
+        for (quantity, (name, truth)) in judged.iter().zip(impact.losses().expect("a loss")) {
+            assert!(agrees(truth, quantity.runge_kutta, 1e-9), "{name} at {stiffness}: {truth:?}");
+            assert!(truth.radius.value() < 1e-28, "{name} at {stiffness}: {truth:?}");
+        }
+        let [(_, restitution), _] = impact.losses().expect("a loss");
+        (to_f64(&restitution.middle) / alone - 1.0).abs()
+    });
+    // The part of the swing falls as the depth does, as gamma^(-1/2): by 10 each time.
+    assert!(
+        errors.windows(2).all(|pair| (0.08..0.12).contains(&(pair[1] / pair[0]))),
+        "{errors:?}"
+    );
+    let (amplitude, barrier) = (fraction(3, 2), fraction(323, 1000));
+    let stiffness = fraction(10_000, 1);
+    let by_energy = PowerLaw { stiffness: stiffness.clone(), exponent: fraction(1, 1) };
+    let by_energy = enclose_impact(&amplitude, &barrier, &by_energy).expect("a proof");
+    let by_motion = enclose_dashpot_impact(&amplitude, &barrier, &stiffness, &fraction(0, 1));
+    let by_motion = by_motion.expect("a proof");
+    for ((name, one), (_, other)) in by_energy.in_order().into_iter().zip(by_motion.in_order()) {
+        let apart = to_f64(&(&one.middle - &other.middle).abs());
+        assert!(apart <= one.radius.value() + other.radius.value(), "{name}: {apart}");
+    }
 }

@@ -44,8 +44,8 @@ class Parameters(Document):
         gamma: The dimensionless stiffness of the barrier.
         gamma_source: Where gamma comes from, in words.
         integrator_tolerance: The relative error of a step of Runge-Kutta.
-        lambda_: The damping lambda of the contact by Hunt and Crossley, in units of time per
-            radian; null where it loses nothing.
+        lambda_: The damping lambda of the contact, in units of time per radian by Hunt and
+            Crossley, of time with a dashpot; null where it loses nothing.
         linearisation: How the line is fitted that replaces the force of the barrier.
         order: The order of `law` in the amplitude; null where there is none.
         release: The place of the release, from rest, in radians.
@@ -59,7 +59,7 @@ class Parameters(Document):
 
     amplitude: float
     barrier: float
-    contact_law: Literal["least-squares", "least-squares-origin", "equal-energy", "equal-peak-force", "harmonic-balance", "equal-duration", "homotopy", "iteration", "homotopy-2", "harmonic-balance-2", "harmonic-balance-3", "power-law", "power-law-corrected", "exact", "hunt-crossley"]
+    contact_law: Literal["least-squares", "least-squares-origin", "equal-energy", "equal-peak-force", "harmonic-balance", "equal-duration", "homotopy", "iteration", "homotopy-2", "harmonic-balance-2", "harmonic-balance-3", "power-law", "power-law-corrected", "exact", "hunt-crossley", "kelvin-voigt", "kelvin-voigt-no-pull"]
     force: str | None
     gamma: float
     gamma_source: str

@@ -279,10 +279,11 @@ Contact.FIELDS = (
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ContactDamping(Document):
-    """A contact that loses energy: its force is gamma F(d) (1 + lambda d').
+    """A contact that loses energy: its force is gamma F(d) (1 + lambda d') by Hunt and Crossley,
+    gamma (d + lambda d') of a spring with a dashpot.
 
     Attributes:
-        lambda_: The damping, in units of time per radian.
+        lambda_: The damping, in units of time per radian, of a dashpot in those of time.
         restitution: The speed out over the speed in.
         exit_speed: The speed at the end of the contact, in radians per unit of time.
         energy_lost: The energy lost, per unit of mass, in radians squared per unit of time
@@ -291,7 +292,7 @@ class ContactDamping(Document):
             are no derived phases.
         small_damping: The restitution 1 - (2/3) lambda v of small damping, good to 1 % where
             lambda v, with v the speed at the touch, is below 0.15; null where there are no
-            derived phases.
+            derived phases, and with a dashpot.
     """
 
     lambda_: float

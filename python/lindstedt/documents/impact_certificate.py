@@ -160,7 +160,8 @@ class ImpactCertificate(Answer):
         stiffness: The stiffness of the barrier, whose force is `stiffness * depth^exponent`.
         exponent: The exponent of the depth, 3/2 of Hertz's law.
         damping: The damping of a contact that loses energy, whose force is `stiffness *
-            depth^exponent * (1 + damping * depth')`.
+            depth^exponent * (1 + damping * depth')` by the law `hunt-crossley`, `stiffness *
+            (depth + damping * depth')` by `kelvin-voigt`.
         proved: The enclosed numbers.
         tolerance: The size of the relative error up to which a verdict is `pass`.
         runge_kutta: The relative errors of Runge-Kutta.

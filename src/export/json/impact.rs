@@ -13,9 +13,9 @@ use super::{DocumentKind, JsonError, check_kind};
 use crate::audit::paper;
 #[cfg(feature = "schema")]
 use crate::impact::Rule;
-#[cfg(feature = "schema")]
-use crate::impact::contact::ContactLaw;
 use crate::impact::contact::{ContactErrors, ContactMotion, ContactRow, SineSeries};
+#[cfg(feature = "schema")]
+use crate::impact::contact::{ContactLaw, Dashpot};
 use crate::impact::{
     self, ContactLoss, DerivedContact, Form, Impact, Modulus, PhaseReading, Setup, SiImpact, Side,
 };
@@ -209,7 +209,7 @@ pub struct Parameters {
     /// The law of the contact in the derived phases.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = law_names())))]
     pub contact_law: String,
-    /// The damping lambda of the contact by Hunt and Crossley, in units of time per radian; null
+    /// The damping lambda of the contact, in units of time per radian by Hunt and Crossley, of time with a dashpot; null
     /// where it loses nothing.
     pub lambda: Option<f64>,
     /// The coefficient of restitution that lambda follows from; null where it does not.
@@ -367,11 +367,12 @@ pub struct Judged {
     pub error: f64,
 }
 
-/// A contact that loses energy: its force is gamma F(d) (1 + lambda d').
+/// A contact that loses energy: its force is gamma F(d) (1 + lambda d') by Hunt and Crossley, gamma (d + lambda d') of a spring
+/// with a dashpot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 pub struct ContactDamping {
-    /// The damping, in units of time per radian.
+    /// The damping, in units of time per radian, of a dashpot in those of time.
     pub lambda: f64,
     /// The speed out over the speed in.
     pub restitution: Quantity,
@@ -383,7 +384,7 @@ pub struct ContactDamping {
     /// phases.
     pub peak_force: Option<f64>,
     /// The restitution 1 - (2/3) lambda v of small damping, good to 1 % where lambda v, with v the
-    /// speed at the touch, is below 0.15; null where there are no derived phases.
+    /// speed at the touch, is below 0.15; null where there are no derived phases, and with a dashpot.
     pub small_damping: Option<Judged>,
 }
 
@@ -650,12 +651,15 @@ impl Parameters {
             order,
             contact_law: match setup.loss {
                 None => setup.contact_law.name(),
-                Some(_) => HUNT_CROSSLEY,
+                Some(loss) => loss.name(),
             }
             .to_owned(),
             lambda: setup.loss.map(|_| damping),
             restitution: match setup.loss {
-                Some(ContactLoss::Restitution(wanted)) => Some(wanted),
+                Some(
+                    ContactLoss::Restitution(wanted)
+                    | ContactLoss::Dashpot { restitution: wanted, .. },
+                ) => Some(wanted),
                 Some(ContactLoss::Damping(_)) | None => None,
             },
             linearisation: setup.rule.name().to_owned(),
@@ -664,13 +668,11 @@ impl Parameters {
     }
 }
 
-/// The name of the law of a contact that loses energy.
-const HUNT_CROSSLEY: &str = "hunt-crossley";
-
 #[cfg(feature = "schema")]
 fn law_names() -> Vec<&'static str> {
     let names = ContactLaw::ALL.map(ContactLaw::name);
-    names.into_iter().chain([HUNT_CROSSLEY]).collect()
+    let lossy = std::iter::once(ContactLoss::Damping(1.0).name());
+    names.into_iter().chain(lossy).chain(Dashpot::ALL.map(Dashpot::name)).collect()
 }
 
 impl ContactLawRow {
@@ -694,16 +696,18 @@ impl ContactLawRow {
 
 fn contact_damping(impact: &Impact) -> Option<ContactDamping> {
     let ([restitution, exit_speed], energy_lost) = impact.losses()?;
-    let contact = match &impact.contact {
-        Some(DerivedContact::Damped(contact)) => Some(contact),
-        Some(DerivedContact::Elastic(_)) | None => None,
+    let (contact, spring) = match &impact.contact {
+        Some(DerivedContact::Damped(contact)) => (Some(contact), None),
+        Some(DerivedContact::Spring(spring)) => (None, Some(spring)),
+        Some(DerivedContact::Elastic(_)) | None => (None, None),
     };
+    let peak_force = contact.map(|contact| contact.peak_force);
     Some(ContactDamping {
         lambda: impact.damping,
         restitution: quantity(impact, &restitution),
         exit_speed: quantity(impact, &exit_speed),
         energy_lost: quantity(impact, &energy_lost),
-        peak_force: contact.map(|contact| contact.peak_force),
+        peak_force: peak_force.or(spring.map(|spring| spring.peak_force)),
         small_damping: contact.map(|contact| {
             let value = 1.0 - 2.0 / 3.0 * contact.damping * contact.speed;
             Judged { value, error: value / contact.restitution - 1.0 }

@@ -30,7 +30,8 @@ pub struct ImpactCertificateDocument {
     pub stiffness: Constant,
     /// The exponent of the depth, 3/2 of Hertz's law.
     pub exponent: Constant,
-    /// The damping of a contact that loses energy, whose force is `stiffness * depth^exponent * (1 + damping * depth')`.
+    /// The damping of a contact that loses energy, whose force is `stiffness * depth^exponent * (1 + damping * depth')` by the law
+    /// `hunt-crossley`, `stiffness * (depth + damping * depth')` by `kelvin-voigt`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub damping: Option<Constant>,
     /// The enclosed numbers.

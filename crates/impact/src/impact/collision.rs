@@ -12,6 +12,7 @@
 
 use thiserror::Error;
 
+use super::contact::Dashpot;
 use super::linearisation::work;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
 use crate::numeric::ode::root::find_root;
@@ -35,6 +36,9 @@ pub struct Collision<'a> {
     /// lambda >= 0: the barrier pushes with gamma F(d) (1 + lambda d'), and never pulls; zero where
     /// nothing is lost in it.
     pub damping: f64,
+    /// A dashpot in place of that law: the barrier pushes with gamma (F(d) + F(1) lambda d'), F a spring, and
+    /// may pull.
+    pub dashpot: Option<Dashpot>,
 }
 
 /// Restitution, speed out and energy lost per unit of mass, of a contact with these speeds in and
@@ -150,6 +154,19 @@ impl CollisionError {
 const SMALLEST_AMPLITUDE: f64 = 1e-120;
 
 impl Collision<'_> {
+    /// The force of the barrier at this depth and speed inwards, its loss included.
+    pub(super) fn contact_force(&self, depth: f64, inwards: f64) -> f64 {
+        let elastic = (self.elastic_force)(depth.max(0.0));
+        let lossy = match self.dashpot {
+            None => elastic * (1.0 + self.damping * inwards).max(0.0),
+            Some(dashpot) => {
+                let force = elastic + (self.elastic_force)(1.0) * self.damping * inwards;
+                if dashpot == Dashpot::Pulls { force } else { force.max(0.0) }
+            }
+        };
+        self.stiffness * lossy
+    }
+
     /// Checks that the numbers describe a collision.
     ///
     /// # Errors
@@ -234,6 +251,7 @@ impl Collision<'_> {
     ///     restoring_force: &f64::sin,
     ///     elastic_force: &elastic_force,
     ///     damping: 0.0,
+    ///     dashpot: None,
     /// };
     /// let exact = (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt();
     /// assert!((pendulum.contact_speed()? - exact).abs() < 1e-14);

@@ -21,7 +21,7 @@ use std::f64::consts::PI;
 
 use num_complex::Complex64;
 
-use super::contact::{ContactMotion, HuntCrossley, SineSeries};
+use super::contact::{ContactMotion, DampedSpring, HuntCrossley, SineSeries};
 use super::error::ImpactError;
 use super::form::Form;
 use super::phases::{MotionPhase, ThreePhases};
@@ -204,6 +204,8 @@ pub enum DerivedContact {
     Elastic(Box<ContactMotion>),
     /// A contact with damping, without the force of the swing.
     Damped(Box<HuntCrossley>),
+    /// A spring with a dashpot, without the force of the swing.
+    Spring(Box<DampedSpring>),
 }
 
 impl DerivedContact {
@@ -212,6 +214,7 @@ impl DerivedContact {
         match self {
             Self::Elastic(contact) => [contact.depth, contact.duration, speed],
             Self::Damped(contact) => [contact.depth, contact.duration, contact.exit_speed],
+            Self::Spring(contact) => [contact.depth, contact.duration, contact.exit_speed],
         }
     }
 
@@ -221,6 +224,13 @@ impl DerivedContact {
             Self::Elastic(contact) => contact.sine_series(SERIES),
             Self::Damped(contact) => SineSeries::from_motion(
                 |time| contact.position(time),
+                contact.duration,
+                0.0,
+                contact.depth,
+                SERIES,
+            ),
+            Self::Spring(contact) => SineSeries::from_motion(
+                |time| contact.phase_point(time)[0],
                 contact.duration,
                 0.0,
                 contact.depth,
@@ -245,7 +255,7 @@ pub(super) fn phases_of(
     let [penetration, duration, exit_speed] = contact.numbers(speed);
     let (back, way_back) = match contact {
         DerivedContact::Elastic(_) => (flight.form(), touch),
-        DerivedContact::Damped(_) => {
+        DerivedContact::Damped(_) | DerivedContact::Spring(_) => {
             let back = flight.passing(equations, barrier, exit_speed)?;
             (back.form(), back.touch(barrier)?.0)
         }

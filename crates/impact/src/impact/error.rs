@@ -78,6 +78,17 @@ pub enum ImpactError {
         /// The force.
         force: String,
     },
+    /// A dashpot beside a force that is not a spring.
+    #[error(
+        "the law {law} is a spring with a dashpot, whose force is a number times the depth, but it is `{force}`: leave the force \
+         out, which is gamma*d then, or take hunt-crossley"
+    )]
+    NoSpring {
+        /// The law.
+        law: &'static str,
+        /// The force.
+        force: String,
+    },
     /// A value for a name that does not occur.
     #[error("there is no parameter `{name}`, neither in the swing nor in the force of the barrier")]
     Unknown {

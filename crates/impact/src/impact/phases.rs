@@ -244,6 +244,7 @@ impl ImpactProblem<'_> {
             restoring_force: self.restoring_force,
             elastic_force: self.elastic_force,
             damping: 0.0,
+            dashpot: None,
         }
     }
 }

@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 use num_integer::Integer as _;
 use num_traits::{Signed, ToPrimitive};
 
-use super::contact::ContactLaw;
+use super::contact::{ContactLaw, Dashpot};
 use super::error::ImpactError;
 use super::hertz::DEFAULT_STIFFNESS;
 use super::linearisation::Rule;
@@ -77,7 +77,7 @@ pub struct Setup {
     pub contact_law: ContactLaw,
     /// Whether a table of every law of the contact is wanted.
     pub every_contact_law: bool,
-    /// The loss in the contact: with it the derived column is that of Hunt and Crossley.
+    /// The loss in the contact: with it the derived column is that of its law.
     pub loss: Option<ContactLoss>,
     /// The largest relative error of a passing closed form.
     pub tolerance: f64,
@@ -87,7 +87,7 @@ pub struct Setup {
     pub step_limit: u32,
 }
 
-/// The loss in a contact, by the law of Hunt and Crossley.
+/// The loss in a contact: by the law of Hunt and Crossley, or in a dashpot beside a spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ContactLoss {
     /// lambda, positive, in units of time over the unit of x: mu/gamma in equation (7).
@@ -95,6 +95,32 @@ pub enum ContactLoss {
     /// The coefficient of restitution, above 0 and below 1, at the speed that the energy of the
     /// swing gives the touch.
     Restitution(f64),
+    /// The coefficient of restitution, above 0 and below 1, of a spring with a dashpot alone, the same at any
+    /// speed; the force of the barrier must be a spring.
+    Dashpot {
+        /// Whether it pulls on the way out.
+        dashpot: Dashpot,
+        /// The coefficient of restitution.
+        restitution: f64,
+    },
+}
+
+impl ContactLoss {
+    /// The name of the law, as in a problem file.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Damping(_) | Self::Restitution(_) => "hunt-crossley",
+            Self::Dashpot { dashpot, .. } => dashpot.name(),
+        }
+    }
+
+    /// The dashpot; `None` for the law of Hunt and Crossley.
+    pub const fn dashpot(self) -> Option<Dashpot> {
+        match self {
+            Self::Damping(_) | Self::Restitution(_) => None,
+            Self::Dashpot { dashpot, .. } => Some(dashpot),
+        }
+    }
 }
 
 /// The default pendulum: released at -1.5 rad, the barrier at 0.323, the stiffness of its design by
@@ -286,9 +312,22 @@ impl Setup {
         let pressed = written.substitute(letters.depth, &inside)?;
         let pressed = match self.loss {
             None => pressed,
-            Some(_) => {
+            Some(loss) => {
                 let inwards = &sign * &Expr::from(x.derivative());
-                &pressed * &(&Expr::from(1) + &(&Expr::from(letters.damping) * &inwards))
+                let damped = &Expr::from(letters.damping) * &inwards;
+                match loss.dashpot() {
+                    None => &pressed * &(&Expr::from(1) + &damped),
+                    // The force of a spring is that of d + lambda d' in place of d.
+                    Some(dashpot) => {
+                        let force = &pressed + &written.substitute(letters.depth, &damped)?;
+                        match dashpot {
+                            Dashpot::Pulls => force,
+                            Dashpot::DoesNotPull => {
+                                Expr::function(Function::Maximum, vec![force, Expr::zero()])?
+                            }
+                        }
+                    }
+                }
             }
         };
         let pressed = &(&sign * &pressed) * &Expr::function(Function::Step, vec![inside])?;

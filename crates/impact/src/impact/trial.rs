@@ -8,7 +8,9 @@
 use super::collision::{Collision, CollisionError};
 use super::contact::hunt_crossley::{damping_for, restitution};
 use super::contact::power_law::exponent_of;
-use super::contact::{ContactError, ContactLaw, ContactRow, HuntCrossley, Touch, comparison};
+use super::contact::{
+    ContactError, ContactLaw, ContactRow, DampedSpring, HuntCrossley, Touch, comparison,
+};
 use super::derived::{DerivedContact, Flight, phases_of};
 use super::error::ImpactError;
 use super::judge::{Deviation, TrueImpact, assured_impact, deviation};
@@ -95,6 +97,7 @@ impl Trial<'_> {
             restoring_force: &|z: f64| sign * equations.restoring_force(origin + sign * z),
             elastic_force: &|depth: f64| equations.elastic_force(depth),
             damping: 0.0,
+            dashpot: setup.loss.and_then(ContactLoss::dashpot),
         };
         let seen = |error: CollisionError| error.seen_from(sign, origin);
         let inside = collision.release > collision.barrier && collision.barrier.is_finite();
@@ -110,15 +113,26 @@ impl Trial<'_> {
         };
         collision.check().map_err(seen)?;
         let energy_speed = collision.contact_speed().map_err(seen)?;
+        let exponent = exponent_of(collision.elastic_force);
+        let is_spring = exponent.is_some_and(|exponent| (exponent - 1.0).abs() < 1e-9);
+        if let (Some(dashpot), false) = (collision.dashpot, is_spring) {
+            let force =
+                setup.force.as_ref().map_or("gamma*d^(3/2)".to_owned(), |own| own.to_string());
+            return Err(ImpactError::NoSpring { law: dashpot.name(), force });
+        }
         let damping = match setup.loss {
             None => 0.0,
             Some(ContactLoss::Damping(damping)) => damping,
             Some(ContactLoss::Restitution(wanted)) => damping_for(wanted)? / energy_speed,
+            Some(ContactLoss::Dashpot { dashpot, restitution }) => {
+                let stiffness = collision.stiffness * (collision.elastic_force)(1.0);
+                2.0 * dashpot.damping_ratio_for(restitution)? / stiffness.sqrt()
+            }
         };
-        restitution(damping * energy_speed)?;
-        if let (Some(_), None, Some(force)) =
-            (setup.loss, exponent_of(collision.elastic_force), &setup.force)
-        {
+        if collision.dashpot.is_none() {
+            restitution(damping * energy_speed)?;
+        }
+        if let (Some(_), None, Some(force)) = (setup.loss, exponent, &setup.force) {
             return Err(ImpactError::NoPower { force: force.to_string() });
         }
         let collision = Collision { damping, ..collision };
@@ -275,7 +289,12 @@ impl Trial<'_> {
             None => {
                 Ok(DerivedContact::Elastic(Box::new(touch.contact_by(self.setup.contact_law)?)))
             }
-            Some(_) => {
+            Some(ContactLoss::Dashpot { dashpot, restitution }) => {
+                let stiffness = touch.stiffness * (touch.elastic_force)(1.0);
+                let contact = DampedSpring::new(dashpot, stiffness, restitution, speed)?;
+                Ok(DerivedContact::Spring(Box::new(contact)))
+            }
+            Some(ContactLoss::Damping(_) | ContactLoss::Restitution(_)) => {
                 let exponent = touch.exponent.ok_or(ContactError::NoPowerLaw)?;
                 let stiffness = touch.stiffness * (touch.elastic_force)(1.0);
                 let contact =

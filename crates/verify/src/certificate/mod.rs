@@ -53,7 +53,8 @@ pub use damped::{
 };
 pub use formula::{Enclosure, Errors, JudgedFormula, LettersOfLaw, SizeBounds};
 pub use impact::{
-    ImpactEnclosure, LossEnclosure, NotEnclosed, PowerLaw, enclose_impact, enclose_lossy_impact,
+    ImpactEnclosure, LossEnclosure, NotEnclosed, PowerLaw, enclose_dashpot_impact, enclose_impact,
+    enclose_lossy_impact,
 };
 pub use law_on_range::{
     HuntCrossleyForce, LawCertificate, LawError, LawNotProved, LawQuantity, ModeBranch,

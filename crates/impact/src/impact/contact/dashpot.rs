@@ -34,6 +34,17 @@ pub enum Dashpot {
 }
 
 impl Dashpot {
+    /// Both, in the order of a table.
+    pub const ALL: [Self; 2] = [Self::Pulls, Self::DoesNotPull];
+
+    /// The name of the law, as in a problem file.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pulls => "kelvin-voigt",
+            Self::DoesNotPull => "kelvin-voigt-no-pull",
+        }
+    }
+
     /// The coefficient of restitution by the damping ratio zeta = c/(2 sqrt(K m)), whatever the speed.
     ///
     /// # Errors

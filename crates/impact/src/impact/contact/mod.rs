@@ -18,6 +18,7 @@
 //!   of force and depth, duration.
 //! - `dashpot`: a spring with a dashpot, or a force with one that comes in by a step: restitution and
 //!   damping.
+//! - `damped_spring`: the motion of a spring with a dashpot, a damped sine.
 //! - `line`: a line in place of the force, equation (15), which the paper's phases use as well.
 //! - `half_oscillation`: homotopy, iteration and the balance of harmonics.
 //! - [`law`]: all laws by name, beside the exact one: [`comparison`].
@@ -33,6 +34,7 @@ use crate::decimal::decimal;
 use crate::numeric::ode::quadrature::QuadratureError;
 use crate::numeric::ode::root::RootError;
 
+mod damped_spring;
 mod dashpot;
 pub mod exact;
 mod half_oscillation;
@@ -42,6 +44,7 @@ pub(super) mod line;
 pub mod power_law;
 mod time;
 
+pub use damped_spring::DampedSpring;
 pub use dashpot::{Dashpot, StepContact};
 pub use exact::{ExactContact, SineSeries};
 pub use hunt_crossley::HuntCrossley;

@@ -2,7 +2,7 @@
 //!
 //! In: the original equation x'' + f(x) + gamma F(x - x_c) H(x - x_c) = 0 as closures, released at
 //! rest from x = -A; with contact damping gamma F (1 + lambda x') stands for gamma F, as long as
-//! that pushes. Out: [`TrueImpact`]: speed, depth, duration and period measured on the Runge-Kutta
+//! that pushes, or gamma (F + F(1) lambda x') with a dashpot. Out: [`TrueImpact`]: speed, depth, duration and period measured on the Runge-Kutta
 //! path, the path, the drift of its energy
 //!
 //! ```text
@@ -99,6 +99,7 @@ pub(in crate::impact) fn way_forward(reason: &StopReason) -> String {
 ///     restoring_force: &f64::sin,
 ///     elastic_force: &elastic_force,
 ///     damping: 0.0,
+///     dashpot: None,
 /// };
 /// let truth = true_impact(&pendulum, &IntegrationOptions::with_tolerance(1e-12))?;
 /// let by_energy = (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt();
@@ -109,16 +110,14 @@ pub fn true_impact(
     collision: &Collision,
     options: &ode::IntegrationOptions,
 ) -> Result<TrueImpact, ImpactError> {
-    let &Collision { release, barrier, stiffness, restoring_force, elastic_force, damping } =
+    let &Collision { release, barrier, stiffness, restoring_force, elastic_force, damping, .. } =
         collision;
     if barrier <= release {
         return Err(CollisionError::ReleasedBehindBarrier { release, barrier }.into());
     }
     let scale = release.abs();
     let swing = |_: f64, x: f64, _: f64| -restoring_force(x);
-    let press = |depth: f64, inwards: f64| {
-        stiffness * elastic_force(depth.max(0.0)) * (1.0 + damping * inwards).max(0.0)
-    };
+    let press = |depth: f64, inwards: f64| collision.contact_force(depth, inwards);
     let approach = approach(swing, [release, barrier], &at_scale(options, scale))?;
     let touch = ode::State { x: barrier, ..approach.end() };
     let energy = 0.5 * touch.v * touch.v;
@@ -293,6 +292,7 @@ const TIGHTEST: f64 = 1e-14;
 ///     restoring_force: &f64::sin,
 ///     elastic_force: &elastic_force,
 ///     damping: 0.0,
+///     dashpot: None,
 /// };
 /// let truth = assured_impact(&pendulum, &IntegrationOptions::default())?;
 /// assert!((truth.penetration / 0.005446775 - 1.0).abs() < 1e-6); // rad
@@ -457,6 +457,7 @@ mod tests {
             restoring_force: &FORCE,
             elastic_force: &elastic_force,
             damping: 0.0,
+            dashpot: None,
         }
     }
 

@@ -13,6 +13,9 @@
 //! On every step v has one sign, or falls throughout: there is one deepest point, and one end. Both are roots of
 //! the polynomials of a step between two certain signs.
 //!
+//! A spring with a dashpot that pulls, `d'' = -sin(xc + d) - gamma (d + lambda d')`, is the same with
+//! `gamma (q^3 + lambda q v)` for `gamma q^(2 n + 1) (1 + lambda v)`.
+//!
 //! In: place, stiffness, exponent and damping of the barrier, the speed. Out: depth, duration and exit speed as
 //! balls. A contact takes some thirty steps.
 //!
@@ -40,6 +43,8 @@ pub(super) struct LossyContact {
     pub(super) stiffness: Ball,
     /// lambda.
     pub(super) damping: Ball,
+    /// Whether the loss is that of a dashpot beside a spring.
+    pub(super) has_dashpot: bool,
     /// p, two more than twice the exponent of the depth.
     pub(super) power: u32,
     /// The speed at the touch.
@@ -267,7 +272,8 @@ impl LossyContact {
             sine.push(next_sine);
             cosine.push(next_cosine);
             let power = powers.last()?;
-            let lost = product(&self.damping, &coefficient(power, &v, k));
+            let damped = if self.has_dashpot { &q } else { power };
+            let lost = product(&self.damping, &coefficient(damped, &v, k));
             let elastic = product(&self.stiffness, &sum(&power[k], &lost));
             let force = sum(&coefficient(&q, &sine, k), &elastic);
             let divisor = u32::try_from(k + 1).ok()?;

@@ -231,6 +231,45 @@ pub fn enclose_lossy_impact(
     force: &PowerLaw,
     damping: &Rational,
 ) -> Result<ImpactEnclosure, NotEnclosed> {
+    enclose_lossy(amplitude, barrier, force, (damping, false))
+}
+
+/// Encloses the impact of a pendulum that is released from rest at `-amplitude` towards a barrier at `barrier`, on
+/// its right, a spring with a dashpot: its force is `stiffness (d + damping d')`, which pulls before the depth is zero
+/// again, where the contact ends. The period ends where the motion turns after the impact.
+///
+/// ```
+/// # use lindstedt_verify as lindstedt;
+/// use lindstedt::certificate::enclose_dashpot_impact;
+/// use lindstedt::exact::Rational;
+///
+/// let fraction = |above: i64, below: i64| Rational::new(above.into(), below.into());
+/// let (amplitude, barrier) = (fraction(3, 2), fraction(323, 1000));
+/// let impact = enclose_dashpot_impact(&amplitude, &barrier, &fraction(1_000_000, 1), &fraction(1, 10_000))?;
+/// assert!(impact.loss.is_some_and(|loss| loss.restitution.radius.value() < 1e-30));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`NotEnclosed`] if there is no such impact, or its numbers are not proved.
+pub fn enclose_dashpot_impact(
+    amplitude: &Rational,
+    barrier: &Rational,
+    stiffness: &Rational,
+    damping: &Rational,
+) -> Result<ImpactEnclosure, NotEnclosed> {
+    let spring =
+        PowerLaw { stiffness: stiffness.clone(), exponent: Rational::from_integer(1.into()) };
+    enclose_lossy(amplitude, barrier, &spring, (damping, true))
+}
+
+/// Encloses an impact with a loss by Hunt and Crossley, or by a dashpot.
+fn enclose_lossy(
+    amplitude: &Rational,
+    barrier: &Rational,
+    force: &PowerLaw,
+    (damping, has_dashpot): (&Rational, bool),
+) -> Result<ImpactEnclosure, NotEnclosed> {
     if damping.is_negative() {
         return Err(NotEnclosed::Damping);
     }
@@ -240,6 +279,7 @@ pub fn enclose_lossy_impact(
         barrier: place,
         stiffness: WORKING.fraction(&force.stiffness),
         damping: WORKING.fraction(damping),
+        has_dashpot,
         power,
         speed: speed.clone(),
     };

@@ -400,3 +400,18 @@ fn walls_that_leave_no_room_end_a_motion_where_it_begins() {
     assert_eq!((motion.reason(), motion.end()), (PathEnd::PassesWall, 0.0));
     assert_eq!(motion.extremes(), [[1.0, 1.0]]);
 }
+
+/// A motion may begin where the gap of a round wall is greatest: between x^2 < 1 it is that between -1 < x < 1.
+#[test]
+fn a_motion_may_begin_where_a_gap_is_greatest() {
+    let end = |walls: &[(&str, &str)]| {
+        let motion = begun(course("x'' + x/10 = 0", walls, ""), &[("x'", 1.0)], 10.0).follow();
+        let motion = motion.expect("a motion");
+        assert_eq!((motion.reason(), motion.walls.impacts.len()), (PathEnd::Reached, 2));
+        states(&motion, 10.0)
+    };
+    let (round, straight) = (end(&[("x^2 < 1", "1/2")]), end(&[("-1 < x < 1", "1/2")]));
+    for (one, other) in round.iter().zip(&straight) {
+        assert!((one - other).abs() < 1e-12, "{round:?} {straight:?}");
+    }
+}

@@ -312,7 +312,9 @@ impl CompiledWalls {
         }
         for (index, wall) in self.walls.iter().enumerate() {
             let at = self.at(index, time, state);
-            if at.compliance().is_nan() || at.compliance() <= 0.0 {
+            // Away from a wall, x^2 < 1, its gap may be greatest, and changes by no velocity there.
+            let is_greatest = at.gap > 0.0 && at.largest_normal() == 0.0;
+            if !is_greatest && (at.compliance().is_nan() || at.compliance() <= 0.0) {
                 return Err(WallError::WithoutMass(wall.impact.gap.clone()).into());
             }
             if at.gap.is_nan() || at.rate.is_nan() {

@@ -17,6 +17,10 @@ pub(super) struct SpareMemory(Arc<Mutex<FreeLists>>);
 /// Free lists and the bytes in them.
 #[derive(Debug, Default)]
 struct FreeLists {
+    #[expect(
+        clippy::vec_box,
+        reason = "a path takes its lists and leaves them without moving them"
+    )]
     lists: Vec<Box<PathLists>>,
     bytes: usize,
 }

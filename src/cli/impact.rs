@@ -134,7 +134,7 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
     let [Some(amplitude), Some(barrier), Some(stiffness)] = &exact else {
         return Err(Failure::because("a number of the impact is not finite".to_owned()));
     };
-    let force = power_law(&setup, stiffness)?;
+    let force = power_laws(&setup, stiffness)?;
     let dashpot = setup.loss.and_then(ContactLoss::dashpot);
     if dashpot == Some(Dashpot::DoesNotPull) {
         return Err(Failure::Usage(
@@ -153,7 +153,7 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
     let enclosure = match (lossless, &damping) {
         (Some(lossless), _) => lossless,
         (None, Some(damping)) if dashpot.is_some() => {
-            enclose_dashpot_impact(amplitude, barrier, &force.stiffness, damping)?
+            enclose_dashpot_impact(amplitude, barrier, stiffness, damping)?
         }
         (None, Some(damping)) => enclose_lossy_impact(amplitude, barrier, &force, damping)?,
         (None, None) => return Err(Failure::because("the damping is not finite".to_owned())),
@@ -179,22 +179,24 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
     Ok(Outcome { verdict: Some(Verdict::from_passed(passes)), ..answer.outcome(common)? })
 }
 
-/// The force of the barrier, which has to be a power of the depth.
-fn power_law(setup: &Setup, stiffness: &Rational) -> Result<PowerLaw, Failure> {
-    let Some(force) = &setup.force else { return Ok(PowerLaw::hertz(stiffness.clone())) };
+/// The force of the barrier, which has to be a power of the depth or a sum of them.
+fn power_laws(setup: &Setup, stiffness: &Rational) -> Result<Vec<PowerLaw>, Failure> {
+    let Some(force) = &setup.force else { return Ok(vec![PowerLaw::hertz(stiffness.clone())]) };
     let mut values: BTreeMap<Symbol, Expr> =
         setup.values.iter().map(|(name, value)| (name, value.clone())).collect();
     values.insert("gamma".into(), Expr::number(stiffness.clone()));
-    let law = force.substitute_all(&values).and_then(|force| PowerLaw::of(&force, "d".into()));
+    let laws = force.substitute_all(&values).and_then(|force| PowerLaw::sum_of(&force, "d".into()));
     let refused = |reason: &str| {
         Failure::refused(
             &format!("--certify: the force `{force}` of the barrier {reason}"),
-            Some("write it as a number times a power of the depth, gamma*d^2, or leave out --certify, whose place Runge-Kutta takes".to_owned()),
+            Some("write it as numbers times powers of the depth, gamma*d^2 + gamma*d^3, or leave out --certify, whose place Runge-Kutta takes".to_owned()),
         )
     };
-    match law {
-        Ok(Some(law)) => Ok(law),
-        Ok(None) => Err(refused("is no power of the depth d with numbers that are fractions")),
+    match laws {
+        Ok(Some(laws)) => Ok(laws),
+        Ok(None) => {
+            Err(refused("is no sum of powers of the depth d with numbers that are fractions"))
+        }
         Err(error) => Err(refused(&format!("is not evaluated: {error}"))),
     }
 }

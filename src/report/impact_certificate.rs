@@ -17,8 +17,8 @@ pub struct ImpactCertificateReport<'a> {
     pub enclosure: &'a ImpactEnclosure,
     /// A and xc as exact numbers.
     pub exact: [&'a Rational; 2],
-    /// The force of the barrier.
-    pub force: &'a PowerLaw,
+    /// The power laws whose sum is the force of the barrier.
+    pub force: &'a [PowerLaw],
     /// lambda of a contact that loses energy.
     pub damping: Option<&'a Rational>,
     /// The largest relative error of a passing closed form.
@@ -69,11 +69,23 @@ pub fn impact_certificate<'a>(report: &ImpactCertificateReport<'a>) -> Document<
     let mut given = vec![
         ("A, released from rest at x = -A", amplitude),
         ("xc, the place of the barrier", barrier),
-        ("gamma, its stiffness", exactly(&report.force.stiffness)),
     ];
-    if *report.force != PowerLaw::hertz(report.force.stiffness.clone()) {
-        given[2].0 = "stiffness of the barrier";
-        given.push(("exponent of the depth", exactly(&report.force.exponent)));
+    match report.force {
+        [law] if *law == PowerLaw::hertz(law.stiffness.clone()) => {
+            given.push(("gamma, its stiffness", exactly(&law.stiffness)));
+        }
+        [law] => given.extend([
+            ("stiffness of the barrier", exactly(&law.stiffness)),
+            ("exponent of the depth", exactly(&law.exponent)),
+        ]),
+        laws => {
+            let power = |law: &PowerLaw| match exactly(&law.exponent).as_str() {
+                "1" => format!("{} d", exactly(&law.stiffness)),
+                exponent => format!("{} d^{exponent}", exactly(&law.stiffness)),
+            };
+            let sum: Vec<String> = laws.iter().map(power).collect();
+            given.push(("force of the barrier at the depth d", sum.join(" + ")));
+        }
     }
     if let Some(damping) = report.damping {
         let dashpot = report.impact.setup.loss.and_then(ContactLoss::dashpot);

@@ -317,7 +317,7 @@ fn options(study: &Study) -> Vec<String> {
         ),
     };
     words.push(format!(
-        "seed {}, run i with its i-th stream; {evaluations} designs followed, {by_integration}",
+        "seed {}, run i with its i-th stream; {evaluations} designs tried, {by_integration}",
         question.seed
     ));
     words

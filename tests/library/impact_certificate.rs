@@ -6,6 +6,7 @@ use lindstedt::certificate::{
     enclose_lossy_impact,
 };
 use lindstedt::exact::{Rational, from_f64, to_f64};
+use lindstedt::expr::Expr;
 use lindstedt::impact::contact::Dashpot;
 use lindstedt::impact::{ContactLoss, Setup, solve};
 use num_traits::Signed as _;
@@ -20,7 +21,7 @@ fn exact(value: f64) -> Rational {
 }
 
 fn enclosed(amplitude: f64, barrier: f64, stiffness: f64) -> Result<ImpactEnclosure, NotEnclosed> {
-    enclose_impact(&exact(amplitude), &exact(barrier), &PowerLaw::hertz(exact(stiffness)))
+    enclose_impact(&exact(amplitude), &exact(barrier), &[PowerLaw::hertz(exact(stiffness))])
 }
 
 /// Whether a double is what is enclosed, but for its own relative error.
@@ -97,7 +98,8 @@ fn thirty_digits_and_their_sum() {
 fn every_power_of_the_depth_is_proved() {
     for (above, below) in [(1, 2), (1, 1), (2, 1), (5, 2), (4, 1)] {
         let law = PowerLaw { stiffness: fraction(1_000_000, 1), exponent: fraction(above, below) };
-        let impact = enclose_impact(&fraction(3, 2), &fraction(323, 1000), &law).expect("a proof");
+        let impact =
+            enclose_impact(&fraction(3, 2), &fraction(323, 1000), &[law]).expect("a proof");
         let [speed, deepest, duration] =
             [&impact.speed, &impact.penetration, &impact.duration].map(|own| to_f64(&own.middle));
         let exponent = above as f64 / below as f64;
@@ -124,11 +126,11 @@ fn every_power_of_the_depth_is_proved() {
         }
     }
     let spring = PowerLaw { stiffness: fraction(100_000_000, 1), exponent: fraction(1, 1) };
-    let impact = enclose_impact(&fraction(1, 1), &fraction(0, 1), &spring).expect("a proof");
+    let impact = enclose_impact(&fraction(1, 1), &fraction(0, 1), &[spring]).expect("a proof");
     let half_period = std::f64::consts::PI / (1e8_f64 + 1.0).sqrt();
     assert!(agrees(&impact.duration, half_period, 1e-14), "{impact:?}");
     let third = PowerLaw { stiffness: fraction(1000, 1), exponent: fraction(1, 3) };
-    let refused = enclose_impact(&fraction(3, 2), &fraction(323, 1000), &third);
+    let refused = enclose_impact(&fraction(3, 2), &fraction(323, 1000), &[third]);
     assert_eq!(refused.expect_err("no half of a whole number"), NotEnclosed::Exponent);
 }
 
@@ -160,7 +162,7 @@ fn runge_kutta_is_as_good_as_it_says() {
     let proved = enclose_impact(
         &fraction(3, 2),
         &fraction(323, 1000),
-        &PowerLaw::hertz(fraction(1_000_000, 1)),
+        &[PowerLaw::hertz(fraction(1_000_000, 1))],
     )
     .expect("a proof");
     let impact = solve(setup).expect("an impact");
@@ -178,7 +180,7 @@ fn runge_kutta_is_as_good_as_it_says() {
 #[test]
 fn relative_errors_are_rounded_outwards() {
     let proved =
-        enclose_impact(&fraction(3, 2), &fraction(0, 1), &PowerLaw::hertz(fraction(1000, 1)))
+        enclose_impact(&fraction(3, 2), &fraction(0, 1), &[PowerLaw::hertz(fraction(1000, 1))])
             .expect("a proof");
     for parts in [-1e-3, -1e-9, 1e-12, 0.25] {
         let value = to_f64(&proved.speed.middle) * (1.0 + parts);
@@ -225,7 +227,8 @@ fn what_is_no_impact_is_refused() {
 #[test]
 fn without_damping_the_integration_proves_what_the_energy_does() {
     for (above, below) in [(1, 2), (1, 1), (3, 2), (4, 1)] {
-        let law = PowerLaw { stiffness: fraction(1_000_000, 1), exponent: fraction(above, below) };
+        let law =
+            [PowerLaw { stiffness: fraction(1_000_000, 1), exponent: fraction(above, below) }];
         let (amplitude, barrier, none) = (fraction(3, 2), fraction(-323, 1000), fraction(0, 1));
         let by_energy = enclose_impact(&amplitude, &barrier, &law).expect("a proof");
         let by_motion = enclose_lossy_impact(&amplitude, &barrier, &law, &none).expect("a proof");
@@ -242,13 +245,40 @@ fn without_damping_the_integration_proves_what_the_energy_does() {
     }
 }
 
+/// Two halves of a barrier are the whole one, which is proved by the energy; and of a sum of different powers
+/// Runge-Kutta finds what is proved.
+#[test]
+fn a_force_that_is_a_sum_of_powers_is_proved() {
+    let (amplitude, barrier) = (fraction(3, 2), fraction(323, 1000));
+    let halves = [PowerLaw::hertz(fraction(400_000, 1)), PowerLaw::hertz(fraction(600_000, 1))];
+    let whole = [PowerLaw::hertz(fraction(1_000_000, 1))];
+    let [one, other] = [&halves[..], &whole[..]]
+        .map(|force| enclose_impact(&amplitude, &barrier, force).expect("a proof"));
+    for ((name, one), (_, other)) in one.in_order().into_iter().zip(other.in_order()) {
+        let apart = to_f64(&(&one.middle - &other.middle).abs());
+        assert!(apart <= one.radius.value() + other.radius.value(), "{name}: {apart}");
+        assert!(one.radius.value() < 1e-28 * to_f64(&one.middle), "{name}: {one:?}");
+    }
+    let force: Expr = "gamma*d^(3/2) + 20*gamma*d^2".parse().expect("a force");
+    let exactly = force.substitute("gamma".into(), &Expr::from(100_000)).expect("numbers");
+    let laws = PowerLaw::sum_of(&exactly, "d".into()).expect("powers").expect("a sum");
+    assert_eq!(laws.len(), 2);
+    let impact = enclose_impact(&amplitude, &barrier, &laws).expect("a proof");
+    assert_eq!(impact.loss, None);
+    let setup = Setup { stiffness: 1e5, force: Some(force), ..Setup::default() };
+    let solved = solve(setup).expect("an impact");
+    for (quantity, (name, truth)) in solved.quantities().into_iter().zip(impact.in_order()) {
+        assert!(agrees(truth, quantity.runge_kutta, 1e-9), "{name}: {truth:?}");
+    }
+}
+
 /// The harder a barrier of Hunt and Crossley, the less the swing acts during the contact, whose restitution e then
 /// obeys `G(-lambda e v) = G(lambda v)` with `G(z) = z - ln(1 + z)`; Runge-Kutta agrees at every hardness.
 #[test]
 fn a_contact_that_loses_energy_is_proved() {
     let damping = 0.5;
     let errors = [1e5, 1e7, 1e9].map(|stiffness: f64| {
-        let law = PowerLaw::hertz(exact(stiffness));
+        let law = [PowerLaw::hertz(exact(stiffness))];
         let impact =
             enclose_lossy_impact(&fraction(3, 2), &fraction(323, 1000), &law, &exact(damping))
                 .expect("a proof");
@@ -277,7 +307,7 @@ fn a_contact_that_loses_energy_is_proved() {
     let negative = enclose_lossy_impact(
         &fraction(3, 2),
         &fraction(323, 1000),
-        &PowerLaw::hertz(fraction(1_000_000, 1)),
+        &[PowerLaw::hertz(fraction(1_000_000, 1))],
         &fraction(-1, 2),
     );
     assert_eq!(negative.expect_err("a gain"), NotEnclosed::Damping);
@@ -321,7 +351,7 @@ fn a_contact_with_a_dashpot_is_proved() {
     let (amplitude, barrier) = (fraction(3, 2), fraction(323, 1000));
     let stiffness = fraction(10_000, 1);
     let by_energy = PowerLaw { stiffness: stiffness.clone(), exponent: fraction(1, 1) };
-    let by_energy = enclose_impact(&amplitude, &barrier, &by_energy).expect("a proof");
+    let by_energy = enclose_impact(&amplitude, &barrier, &[by_energy]).expect("a proof");
     let by_motion = enclose_dashpot_impact(&amplitude, &barrier, &stiffness, &fraction(0, 1));
     let by_motion = by_motion.expect("a proof");
     for ((name, one), (_, other)) in by_energy.in_order().into_iter().zip(by_motion.in_order()) {

@@ -30,6 +30,9 @@ pub struct ImpactCertificateDocument {
     pub stiffness: Constant,
     /// The exponent of the depth, 3/2 of Hertz's law.
     pub exponent: Constant,
+    /// Further powers of the depth, which are added to the force.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub further_powers: Vec<PowerOfDepth>,
     /// The damping of a contact that loses energy, whose force is `stiffness * depth^exponent * (1 + damping * depth')` by the law
     /// `hunt-crossley`, `stiffness * (depth + damping * depth')` by `kelvin-voigt`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -42,6 +45,16 @@ pub struct ImpactCertificateDocument {
     pub runge_kutta: OfPhases<ErrorBounds>,
     /// The closed forms: the paper's readings and the derived one.
     pub closed_forms: Vec<ProvedClosedForm>,
+}
+
+/// A force `stiffness * depth^exponent`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+pub struct PowerOfDepth {
+    /// The factor.
+    pub stiffness: Constant,
+    /// The exponent of the depth.
+    pub exponent: Constant,
 }
 
 /// The numbers of an impact, or their errors.
@@ -143,13 +156,26 @@ pub fn impact_certificate(report: &ImpactCertificateReport) -> ImpactCertificate
             verdict: verdict.name().to_owned(),
         }
     };
+    let mut powers = report.force.iter().map(|law| PowerOfDepth {
+        stiffness: constant(&law.stiffness),
+        exponent: constant(&law.exponent),
+    });
+    // The enclosures are those of one power at least.
+    let (stiffness, exponent) = match powers.next() {
+        Some(PowerOfDepth { stiffness, exponent }) => (stiffness, exponent),
+        None => (
+            constant(&Rational::from_integer(0.into())),
+            constant(&Rational::from_integer(0.into())),
+        ),
+    };
     ImpactCertificateDocument {
         schema: DocumentKind::ImpactCertificate.schema().to_owned(),
         equation: report.impact.equation.clone(),
         amplitude,
         barrier,
-        stiffness: constant(&report.force.stiffness),
-        exponent: constant(&report.force.exponent),
+        stiffness,
+        exponent,
+        further_powers: powers.collect(),
         damping: report.damping.map(constant),
         proved: OfPhases::of_rows(|row| enclosed(proved[row].1), proved.len()),
         tolerance: report.tolerance,

@@ -1,7 +1,8 @@
-//! Enclosures of a contact that loses energy, by a validated integration of its motion.
+//! Enclosures of a contact that loses energy, or whose force is a sum of powers, by a validated integration of its motion.
 //!
 //! The contact of Hunt and Crossley is `d'' = -sin(xc + d) - gamma d^n (1 + lambda d')` from the touch with the speed
-//! v until d = 0 again. Its energy is not kept, so that there is no integral to take. With the depth `d = q^2` and
+//! v until d = 0 again. Its energy is not kept, so that there is no integral to take; a sum of powers stands in the
+//! place of `gamma d^n` as well. With the depth `d = q^2` and
 //! the variable s, `dt = q ds`, it is a system of analytic functions, through both touches:
 //!
 //! ```text
@@ -35,18 +36,16 @@ const ORDER: usize = 48;
 /// Binary exponent of the largest remainder of a step; a step with a larger one is halved.
 const NEGLIGIBLE: i32 = -150;
 
-/// A contact that loses energy.
+/// A contact that loses energy, or whose force is a sum of powers.
 pub(super) struct LossyContact {
     /// Place of the barrier.
     pub(super) barrier: Ball,
-    /// gamma.
-    pub(super) stiffness: Ball,
+    /// gamma of each power of the depth, with p, two more than twice the exponent.
+    pub(super) terms: Vec<(Ball, u32)>,
     /// lambda.
     pub(super) damping: Ball,
     /// Whether the loss is that of a dashpot beside a spring.
     pub(super) has_dashpot: bool,
-    /// p, two more than twice the exponent of the depth.
-    pub(super) power: u32,
     /// The speed at the touch.
     pub(super) speed: Ball,
 }
@@ -183,11 +182,14 @@ impl LossyContact {
     }
 
     /// The number of halvings of 1 that give an eighth of the time s in which an elastic contact would reach its
-    /// deepest point at the speed of the touch.
+    /// deepest point at the speed of the touch, by the power that stops it first.
     fn first_halvings(&self) -> Option<u32> {
-        let [speed, stiffness] = [&self.speed, &self.stiffness].map(|own| WORKING.nearest(own));
-        let degree = f64::from(self.power);
-        let deepest = (0.25 * degree * speed * speed / stiffness).powf(1.0 / degree);
+        let speed = WORKING.nearest(&self.speed);
+        let deepest = |(stiffness, power): &(Ball, u32)| {
+            let degree = f64::from(*power);
+            (0.25 * degree * speed * speed / WORKING.nearest(stiffness)).powf(1.0 / degree)
+        };
+        let deepest = self.terms.iter().map(deepest).fold(f64::INFINITY, f64::min);
         let eighth = 0.25 * deepest / speed;
         let halvings = (-eighth.log2()).ceil();
         (halvings.is_finite() && halvings.abs() < 500.0).then_some(halvings.max(0.0) as u32)
@@ -243,18 +245,23 @@ impl LossyContact {
         length: &Ball,
         order: usize,
     ) -> Option<States<Vec<Ball>>> {
-        let products = factors_of_power(self.power - 1);
+        let products: Vec<Vec<[usize; 2]>> =
+            self.terms.iter().map(|(_, power)| factors_of_power(power - 1)).collect();
         let (mut q, mut v, mut t) = (vec![q.clone()], vec![v.clone()], vec![t.clone()]);
-        let mut powers: Vec<Vec<Ball>> = vec![vec![]; products.len()];
+        let mut powers: Vec<Vec<Vec<Ball>>> =
+            products.iter().map(|own| vec![vec![]; own.len()]).collect();
+        let mut elastic: Vec<Ball> = vec![];
         let (mut sine, mut cosine): (Vec<Ball>, Vec<Ball>) = (vec![], vec![]);
         for k in 0..order {
-            for (index, [left, right]) in products.iter().enumerate() {
-                let factor = |own: &usize| if *own == 0 { &q } else { &powers[*own - 1] };
-                let next = coefficient(factor(left), factor(right), k);
-                powers[index].push(next);
+            for (powers, products) in powers.iter_mut().zip(&products) {
+                for (index, [left, right]) in products.iter().enumerate() {
+                    let factor = |own: &usize| if *own == 0 { &q } else { &powers[*own - 1] };
+                    let next = coefficient(factor(left), factor(right), k);
+                    powers[index].push(next);
+                }
             }
             // The first product is q^2.
-            let square = &powers[0];
+            let square = powers.first()?.first()?;
             let [next_sine, next_cosine] = match u32::try_from(k).ok()? {
                 0 => sine_and_cosine(&sum(&self.barrier, &square[0]))?,
                 divisor => {
@@ -271,11 +278,18 @@ impl LossyContact {
             };
             sine.push(next_sine);
             cosine.push(next_cosine);
-            let power = powers.last()?;
-            let damped = if self.has_dashpot { &q } else { power };
-            let lost = product(&self.damping, &coefficient(damped, &v, k));
-            let elastic = product(&self.stiffness, &sum(&power[k], &lost));
-            let force = sum(&coefficient(&q, &sine, k), &elastic);
+            let terms = self.terms.iter().zip(&powers);
+            let force_of = |((stiffness, _), powers): (&(Ball, u32), &Vec<Vec<Ball>>)| {
+                Some(product(stiffness, &powers.last()?[k]))
+            };
+            let each = terms.map(force_of).collect::<Option<Vec<Ball>>>()?;
+            elastic.push(each.iter().fold(Ball::zero(), |total, term| sum(&total, term)));
+            let lost = match self.has_dashpot {
+                true => product(&self.terms.first()?.0, &coefficient(&q, &v, k)),
+                false => coefficient(&elastic, &v, k),
+            };
+            let barrier = sum(&elastic[k], &product(&self.damping, &lost));
+            let force = sum(&coefficient(&q, &sine, k), &barrier);
             let divisor = u32::try_from(k + 1).ok()?;
             let of_rate = |rate: &Ball| WORKING.divided(&product(length, rate), divisor);
             let next = [

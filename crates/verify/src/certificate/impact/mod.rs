@@ -1,5 +1,5 @@
 //! The paper's impact, enclosed: a pendulum from rest against an elastic barrier, equation (9) with
-//! any power n of the depth, its three phases with proved bounds.
+//! any power n of the depth, or a sum of powers, its three phases with proved bounds.
 //!
 //! ```text
 //! x'' + sin x + gamma (x - xc)^n H(x - xc) = 0,     x(0) = -A,  x'(0) = 0,     n = 3/2 in (9)
@@ -93,7 +93,8 @@ impl PowerLaw {
         Self { stiffness, exponent: Rational::new(3.into(), 2.into()) }
     }
 
-    /// The power law that an expression in the depth and numbers is; `None` if it is another one.
+    /// The power laws whose sum an expression in the depth and numbers is, each exponent once; `None` if it is
+    /// no such sum.
     ///
     /// # Errors
     /// An expression that cannot be differentiated or written.
@@ -102,12 +103,20 @@ impl PowerLaw {
     /// # use lindstedt_verify as lindstedt;
     /// use lindstedt::certificate::PowerLaw;
     ///
-    /// let law = PowerLaw::of(&"3*d^2/2".parse()?, "d".into())?.ok_or("another law")?;
-    /// assert_eq!((law.stiffness.to_string(), law.exponent.to_string()), ("3/2".into(), "2".into()));
-    /// assert_eq!(PowerLaw::of(&"d + d^2".parse()?, "d".into())?, None);
+    /// let laws = PowerLaw::sum_of(&"3*d^2/2 + 4*d^(3/2)".parse()?, "d".into())?.ok_or("no sum")?;
+    /// let printed = |law: &PowerLaw| (law.stiffness.to_string(), law.exponent.to_string());
+    /// let mut laws: Vec<_> = laws.iter().map(printed).collect();
+    /// laws.sort();
+    /// assert_eq!(laws, [("3/2".into(), "2".into()), ("4".into(), "3/2".into())]);
+    /// assert_eq!(PowerLaw::sum_of(&"d + sin(d)".parse()?, "d".into())?, None);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn of(force: &Expr, depth: Symbol) -> Result<Option<Self>, ExprError> {
+    pub fn sum_of(force: &Expr, depth: Symbol) -> Result<Option<Vec<Self>>, ExprError> {
+        force.expand()?.terms().iter().map(|term| Self::of(term, depth)).collect()
+    }
+
+    /// The power law that an expression in the depth and numbers is; `None` if it is another one.
+    fn of(force: &Expr, depth: Symbol) -> Result<Option<Self>, ExprError> {
         let at_one = |expression: &Expr| expression.substitute(depth, &Expr::one())?.expand();
         let (stiffness, slope) = (at_one(force)?, at_one(&force.differentiate(depth)?)?);
         let (Some(stiffness), Some(slope)) = (stiffness.as_number(), slope.as_number()) else {
@@ -148,7 +157,7 @@ pub enum NotEnclosed {
     #[error("the damping lambda of the contact must not be negative")]
     Damping,
     /// There is no barrier.
-    #[error("the stiffness gamma must be positive")]
+    #[error("the stiffness gamma, the factor of a power of the depth, must be positive")]
     Stiffness,
     /// The force of the barrier is another power of the depth.
     #[error("the exponent of the depth must be half of a whole number, from 1/2 to 20")]
@@ -164,7 +173,9 @@ pub enum NotEnclosed {
 }
 
 /// Encloses the impact of a pendulum that is released from rest at `-amplitude` towards a barrier
-/// at `barrier`, on its right, with this force.
+/// at `barrier`, on its right, whose force is the sum of these power laws.
+///
+/// A single one keeps two integrals; the contact with a sum is integrated as one that loses energy.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -173,7 +184,7 @@ pub enum NotEnclosed {
 ///
 /// let fraction = |above: i64, below: i64| Rational::new(above.into(), below.into());
 /// let barrier = PowerLaw::hertz(fraction(1_000_000, 1));
-/// let impact = enclose_impact(&fraction(3, 2), &fraction(323, 1000), &barrier)?;
+/// let impact = enclose_impact(&fraction(3, 2), &fraction(323, 1000), &[barrier])?;
 /// assert!(impact.speed.radius.value() < 1e-30);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -183,17 +194,17 @@ pub enum NotEnclosed {
 pub fn enclose_impact(
     amplitude: &Rational,
     barrier: &Rational,
-    force: &PowerLaw,
+    force: &[PowerLaw],
 ) -> Result<ImpactEnclosure, NotEnclosed> {
     let approach = Approach::new(amplitude, barrier, force)?;
-    let Approach { place, waves, speed_squared, speed, time, power } = approach;
-    let contact = PowerLawContact {
-        barrier: place,
-        stiffness: WORKING.fraction(&force.stiffness),
-        power,
-        speed_squared,
-        waves,
+    let [(stiffness, power)] = approach.terms.as_slice() else {
+        let none = Rational::from_integer(0.into());
+        let integrated = enclose_lossy(amplitude, barrier, force, (&none, false))?;
+        return Ok(ImpactEnclosure { loss: None, ..integrated });
     };
+    let (stiffness, power) = (stiffness.clone(), *power);
+    let Approach { place, waves, speed_squared, speed, time, .. } = approach;
+    let contact = PowerLawContact { barrier: place, stiffness, power, speed_squared, waves };
     let qm = contact.root_of_depth()?;
     let duration = contact.duration(&qm)?;
     let period = WORKING.sum(&WORKING.scaled(&time, 2), &duration);
@@ -208,7 +219,7 @@ pub fn enclose_impact(
 }
 
 /// Encloses the impact of a pendulum that is released from rest at `-amplitude` towards a barrier at `barrier`, on
-/// its right, which loses energy by the law of Hunt and Crossley: its force is that of the power law times
+/// its right, which loses energy by the law of Hunt and Crossley: its force is the sum of the power laws times
 /// `1 + damping d'`. The period ends where the motion turns after the impact.
 ///
 /// ```
@@ -218,7 +229,7 @@ pub fn enclose_impact(
 ///
 /// let fraction = |above: i64, below: i64| Rational::new(above.into(), below.into());
 /// let barrier = PowerLaw::hertz(fraction(1_000_000, 1));
-/// let impact = enclose_lossy_impact(&fraction(3, 2), &fraction(323, 1000), &barrier, &fraction(1, 2))?;
+/// let impact = enclose_lossy_impact(&fraction(3, 2), &fraction(323, 1000), &[barrier], &fraction(1, 2))?;
 /// assert!(impact.loss.is_some_and(|loss| loss.restitution.radius.value() < 1e-30));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -228,7 +239,7 @@ pub fn enclose_impact(
 pub fn enclose_lossy_impact(
     amplitude: &Rational,
     barrier: &Rational,
-    force: &PowerLaw,
+    force: &[PowerLaw],
     damping: &Rational,
 ) -> Result<ImpactEnclosure, NotEnclosed> {
     enclose_lossy(amplitude, barrier, force, (damping, false))
@@ -260,27 +271,26 @@ pub fn enclose_dashpot_impact(
 ) -> Result<ImpactEnclosure, NotEnclosed> {
     let spring =
         PowerLaw { stiffness: stiffness.clone(), exponent: Rational::from_integer(1.into()) };
-    enclose_lossy(amplitude, barrier, &spring, (damping, true))
+    enclose_lossy(amplitude, barrier, &[spring], (damping, true))
 }
 
-/// Encloses an impact with a loss by Hunt and Crossley, or by a dashpot.
+/// Encloses an impact with a loss by Hunt and Crossley, which may be zero, or by a dashpot.
 fn enclose_lossy(
     amplitude: &Rational,
     barrier: &Rational,
-    force: &PowerLaw,
+    force: &[PowerLaw],
     (damping, has_dashpot): (&Rational, bool),
 ) -> Result<ImpactEnclosure, NotEnclosed> {
     if damping.is_negative() {
         return Err(NotEnclosed::Damping);
     }
     let approach = Approach::new(amplitude, barrier, force)?;
-    let Approach { place, waves, speed, time, power, .. } = approach;
+    let Approach { place, waves, speed, time, terms, .. } = approach;
     let contact = LossyContact {
         barrier: place,
-        stiffness: WORKING.fraction(&force.stiffness),
+        terms,
         damping: WORKING.fraction(damping),
         has_dashpot,
-        power,
         speed: speed.clone(),
     };
     let ends = contact.follow()?;
@@ -319,20 +329,21 @@ struct Approach {
     speed: Ball,
     /// The time to the touch.
     time: Ball,
-    /// p of the barrier.
-    power: u32,
+    /// gamma and p of each power law of the barrier.
+    terms: Vec<(Ball, u32)>,
 }
 
 impl Approach {
     fn new(
         amplitude: &Rational,
         barrier: &Rational,
-        force: &PowerLaw,
+        force: &[PowerLaw],
     ) -> Result<Self, NotEnclosed> {
-        if !force.stiffness.is_positive() {
+        if force.is_empty() || !force.iter().all(|law| law.stiffness.is_positive()) {
             return Err(NotEnclosed::Stiffness);
         }
-        let power = force.power().ok_or(NotEnclosed::Exponent)?;
+        let term = |law: &PowerLaw| Some((WORKING.fraction(&law.stiffness), law.power()?));
+        let terms = force.iter().map(term).collect::<Option<_>>().ok_or(NotEnclosed::Exponent)?;
         let (pi, release) = (WORKING.pi(), WORKING.fraction(amplitude));
         if !amplitude.is_positive() || !is_positive(&WORKING.difference(&pi, &release)) {
             return Err(NotEnclosed::Release);
@@ -348,7 +359,7 @@ impl Approach {
         let speed = WORKING.root(&speed_squared, 2).ok_or(NotEnclosed::Digits)?;
         let half = sine_and_cosine(&WORKING.divided(&release, 2));
         let time = half.and_then(|half| flight(half, barrier)).ok_or(NotEnclosed::Digits)?;
-        Ok(Self { place, waves, speed_squared, speed, time, power })
+        Ok(Self { place, waves, speed_squared, speed, time, terms })
     }
 }
 

@@ -11,6 +11,25 @@ from .common import Constant
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class PowerOfDepth(Document):
+    """A force `stiffness * depth^exponent`.
+
+    Attributes:
+        stiffness: The factor.
+        exponent: The exponent of the depth.
+    """
+
+    stiffness: Constant
+    exponent: Constant
+
+
+PowerOfDepth.FIELDS = (
+    ("stiffness", "stiffness", Constant.from_json),
+    ("exponent", "exponent", Constant.from_json),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class EnclosedNumber(Document):
     """A number with a bound of its distance from the digits that are printed.
 
@@ -159,6 +178,7 @@ class ImpactCertificate(Answer):
         barrier: The place of the barrier.
         stiffness: The stiffness of the barrier, whose force is `stiffness * depth^exponent`.
         exponent: The exponent of the depth, 3/2 of Hertz's law.
+        further_powers: Further powers of the depth, which are added to the force.
         damping: The damping of a contact that loses energy, whose force is `stiffness *
             depth^exponent * (1 + damping * depth')` by the law `hunt-crossley`, `stiffness *
             (depth + damping * depth')` by `kelvin-voigt`.
@@ -174,6 +194,7 @@ class ImpactCertificate(Answer):
     barrier: Constant
     stiffness: Constant
     exponent: Constant
+    further_powers: tuple[PowerOfDepth, ...] | None
     damping: Constant | None
     proved: EnclosedNumberOfPhases
     tolerance: float
@@ -188,10 +209,11 @@ ImpactCertificate.FIELDS = (
     ("barrier", "barrier", Constant.from_json),
     ("stiffness", "stiffness", Constant.from_json),
     ("exponent", "exponent", Constant.from_json),
+    ("further_powers", "further_powers", several(PowerOfDepth.from_json)),
     ("damping", "damping", Constant.from_json),
     ("proved", "proved", EnclosedNumberOfPhases.from_json),
     ("tolerance", "tolerance", None),
     ("runge_kutta", "runge_kutta", ErrorBoundsOfPhases.from_json),
     ("closed_forms", "closed_forms", several(ProvedClosedForm.from_json)),
 )
-ImpactCertificate.OPTIONAL = frozenset(['damping'])
+ImpactCertificate.OPTIONAL = frozenset(['damping', 'further_powers'])

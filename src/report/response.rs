@@ -768,14 +768,21 @@ fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
                 judge(response),
                 response.simulated.len()
             ),
+            None if !response.complete => {
+                "unknown: the work was stopped before a point was judged".to_owned()
+            }
             None => "unknown: no true motion was found".to_owned(),
         },
     )];
     if response.unjudged > 0 {
-        facts.push((
-            "not judged",
-            format!("{} points: {} found no true motion near", response.unjudged, judge(response)),
-        ));
+        let (points, judge) = (response.unjudged, judge(response));
+        let unjudged = match response.complete {
+            true => format!("{points} points: {judge} found no true motion near"),
+            false => format!(
+                "{points} points: the work was stopped before {judge} found a true motion near"
+            ),
+        };
+        facts.push(("not judged", unjudged));
     }
     facts.push((
         "verdict",

@@ -17,7 +17,6 @@ use super::judged::TimedEquations;
 use crate::coupled::CoupledEquations;
 use crate::event::StateEvent;
 use crate::expr::Expr;
-use crate::interrupt::Interrupt;
 use crate::response::{Equations, ResponseError, ResponseRequest};
 use crate::symbol::Symbol;
 
@@ -30,7 +29,6 @@ pub(super) struct Counters {
     equations: TimedEquations,
     /// The parameter that varies.
     parameter: Symbol,
-    interrupt: Interrupt,
 }
 
 /// A request without its counters.
@@ -172,12 +170,7 @@ impl RequestWithoutCounters {
             walls,
             events: events.collect::<Result<_, _>>()?,
         };
-        let counters = Counters {
-            names,
-            equations: timed,
-            parameter: question.parameter,
-            interrupt: question.interrupt,
-        };
+        let counters = Counters { names, equations: timed, parameter: question.parameter };
         Ok(Some(Self { request, equations: others, counters }))
     }
 }
@@ -198,7 +191,7 @@ impl Counters {
         let states = &self.equations.states;
         let start = states.iter().map(value).collect();
         let values = [(self.parameter, parameter)].into();
-        let motion = self.equations.clone().motion(start, times, values, self.interrupt);
+        let motion = self.equations.clone().motion(start, times, values);
         let Some(end) = motion.and_then(|motion| motion.states_at(times[1])) else {
             return vec![];
         };

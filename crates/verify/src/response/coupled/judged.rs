@@ -154,13 +154,13 @@ impl TimedEquations {
     }
 
     /// The motion from a state at a time over a duration, with values of all parameters; `None` if it cannot
-    /// be followed all the way.
+    /// be followed all the way. No interrupt ends it: it shows and judges an orbit that was found before, whose
+    /// values would be wrong without it, and takes no longer than a period.
     pub(super) fn motion(
         self,
         start: Vec<f64>,
         [begin, duration]: [f64; 2],
         values: BTreeMap<Symbol, f64>,
-        interrupt: Interrupt,
     ) -> Option<Trajectory> {
         let timed = self.later(begin)?;
         let coordinates = timed.states[..timed.coordinates].to_vec();
@@ -170,7 +170,6 @@ impl TimedEquations {
             start,
             duration,
             step_limit: STEP_LIMIT,
-            interrupt,
             mass: Some(timed.mass),
             ..TrajectoryRequest::of_rates(coordinates, rates)
                 .with_walls(timed.walls)
@@ -211,8 +210,7 @@ impl CoupledProblem<'_> {
                 events: self.events.clone(),
             };
             let start = self.in_time.onto_walls(start, [begin, duration], parameter);
-            let motion =
-                timed.motion(start, [begin, duration], numbers, self.question.interrupt)?;
+            let motion = timed.motion(start, [begin, duration], numbers)?;
             return Some(OrbitPath::Events(Box::new(motion)));
         }
         let path = match self.series.with_numbers(&numbers) {
@@ -245,7 +243,7 @@ impl CoupledProblem<'_> {
     }
 
     /// The states of a motion at these times by the integrator that found it, for one that has no
-    /// series; the last state that was reached stands for those after it.
+    /// series; the last state that was reached stands for those after it. No interrupt ends it.
     fn sampled(
         &self,
         start: &[f64],
@@ -258,10 +256,11 @@ impl CoupledProblem<'_> {
         let mut columns = vec![Vec::with_capacity(times.len()); start.len()];
         let mut state = start.to_vec();
         let mut before = 0.0;
+        let flow = self.in_time.clone().until(Interrupt::default());
         for time in times {
             if *time > before
                 && let Some(next) =
-                    self.in_time.end(&state, [begin + before, begin + *time], parameter, &sizes)
+                    flow.end(&state, [begin + before, begin + *time], parameter, &sizes)
             {
                 state = next;
             }

@@ -325,8 +325,15 @@ impl CoupledProblem<'_> {
     fn reentries(&self, branch: &OrbitBranch, scale: &[f64]) -> Vec<Orbit> {
         /// Largest number of points beyond the range.
         const MOST: usize = 100;
+        /// Ratio to the lowest frequency of the range below which no motion is followed: towards zero a period takes
+        /// ever longer, and a branch passes a resonance at every part of its natural frequency.
+        const LEAST_FREQUENCY: f64 = 0.5;
         let [low, high] = self.question.range;
         let width = high - low;
+        let least = LEAST_FREQUENCY * self.frequency_at(low).min(self.frequency_at(high));
+        let is_slow = |orbit: &Orbit| {
+            matches!(self.kind, Kind::Driven(_)) && self.frequency_of(orbit) < least
+        };
         let limits = OrbitBranchLimits {
             range: [low - 0.5 * width, high + 0.5 * width],
             longest: 2.0 * LONGEST_STEP,
@@ -356,7 +363,7 @@ impl CoupledProblem<'_> {
         let mut found = Vec::new();
         for start in outward {
             self.with_orbits(scale, branch.anchor.of_orbit(&start), |orbits| {
-                let (beyond, _) = orbits.follow(start, &limits, &|_| false);
+                let (beyond, _) = orbits.follow(start, &limits, &is_slow);
                 found.extend(beyond.windows(2).find_map(|pair| back(orbits, pair)));
             });
         }

@@ -325,9 +325,9 @@ impl CoupledProblem<'_> {
     fn reentries(&self, branch: &OrbitBranch, scale: &[f64]) -> Vec<Orbit> {
         /// Largest number of points beyond the range.
         const MOST: usize = 100;
-        /// Ratio to the lowest frequency of the range below which no motion is followed: towards zero a period takes
-        /// ever longer, and a branch passes a resonance at every part of its natural frequency.
-        const LEAST_FREQUENCY: f64 = 0.5;
+        /// Ratio to the lowest frequency of the range below which no motion is followed, as of a single coordinate:
+        /// towards zero a period takes ever longer, with a resonance at every part of a natural frequency.
+        const LEAST_FREQUENCY: f64 = 0.25;
         let [low, high] = self.question.range;
         let width = high - low;
         let least = LEAST_FREQUENCY * self.frequency_at(low).min(self.frequency_at(high));

@@ -504,3 +504,51 @@ impl CoupledProblem<'_> {
         found
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    use super::super::branches::Start;
+    use super::super::problem::Anchor;
+    use super::*;
+    use crate::coupled::CoupledEquations;
+    use crate::response::ResponseRequest;
+    use crate::response::continuation::BranchEnd;
+
+    /// An orbit that was found before the work is stopped is shown and judged as without the stop.
+    #[test]
+    fn an_interrupt_changes_nothing_of_what_was_found() {
+        static STOP: AtomicBool = AtomicBool::new(false);
+        let equation = "x'' + x'/10 + x + H(x - 1)*(50*(x - 1) + x') = F*cos(w*t)";
+        let question = ResponseRequest::new(equation, "w", [0.5, 1.5], "F = 1/2");
+        let question = ResponseRequest {
+            interrupt: Interrupt::from_flag(&STOP),
+            ..question.expect("a question")
+        };
+        let equations = CoupledEquations::new(question.equations.sides()).expect("equations");
+        let problem = CoupledProblem::new(&question, &equations).expect("a problem");
+        let start = Start { parameter: 0.8, unknowns: vec![1.0, 0.0], section: 0.0 };
+        let orbit = problem.driven_orbit_near(&start, &[]).expect("an orbit");
+        let scale = orbit.kept.travel.clone();
+        let branch = OrbitBranch {
+            orbits: vec![orbit],
+            ends: [BranchEnd::Range; 2],
+            mirrored: false,
+            anchor: Anchor::NONE,
+        };
+        let known = Known { branches: vec![branch], scale };
+        let shown = || {
+            let found = problem.diagram(&known, vec![], vec![]);
+            let point = &found.branches[0].points[0];
+            let numbers = [point.amplitude, point.phase, point.peak];
+            (found.complete, numbers, point.error, found.verdict)
+        };
+        let whole = shown();
+        STOP.store(true, Ordering::Relaxed);
+        let stopped = shown();
+        assert!(whole.0 && !stopped.0);
+        assert!(whole.1[0] > 0.5 && whole.2.is_some_and(|error| error < 1e-6), "{whole:?}");
+        assert_eq!((whole.1, whole.2, whole.3), (stopped.1, stopped.2, stopped.3));
+    }
+}

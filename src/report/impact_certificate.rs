@@ -79,9 +79,15 @@ pub fn impact_certificate<'a>(report: &ImpactCertificateReport<'a>) -> Document<
             ("exponent of the depth", exactly(&law.exponent)),
         ]),
         laws => {
-            let power = |law: &PowerLaw| match exactly(&law.exponent).as_str() {
-                "1" => format!("{} d", exactly(&law.stiffness)),
-                exponent => format!("{} d^{exponent}", exactly(&law.stiffness)),
+            let power = |law: &PowerLaw| {
+                let factor = match exactly(&law.stiffness).as_str() {
+                    "1" => String::new(),
+                    stiffness => format!("{stiffness} "),
+                };
+                match exactly(&law.exponent).as_str() {
+                    "1" => format!("{factor}d"),
+                    exponent => format!("{factor}d^{exponent}"),
+                }
             };
             let sum: Vec<String> = laws.iter().map(power).collect();
             given.push(("force of the barrier at the depth d", sum.join(" + ")));

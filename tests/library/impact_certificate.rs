@@ -8,7 +8,7 @@ use lindstedt::certificate::{
 use lindstedt::exact::{Rational, from_f64, to_f64};
 use lindstedt::expr::Expr;
 use lindstedt::impact::contact::Dashpot;
-use lindstedt::impact::{ContactLoss, Setup, solve};
+use lindstedt::impact::{ContactLoss, Impact, Setup, solve};
 use num_traits::Signed as _;
 use proptest::prelude::*;
 
@@ -272,6 +272,19 @@ fn a_force_that_is_a_sum_of_powers_is_proved() {
     }
 }
 
+/// Runge-Kutta finds every number of a contact that loses energy, and those of the loss are sharp.
+fn assert_losses_are_those_of_runge_kutta(solved: &Impact, impact: &ImpactEnclosure) {
+    let stiffness = solved.setup.stiffness;
+    for (quantity, (name, truth)) in solved.quantities().into_iter().zip(impact.in_order()) {
+        assert!(agrees(truth, quantity.runge_kutta, 1e-9), "{name} at {stiffness}: {truth:?}");
+    }
+    let (judged, _) = solved.losses().expect("a loss");
+    for (quantity, (name, truth)) in judged.iter().zip(impact.losses().expect("a loss")) {
+        assert!(agrees(truth, quantity.runge_kutta, 1e-9), "{name} at {stiffness}: {truth:?}");
+        assert!(truth.radius.value() < 1e-28, "{name} at {stiffness}: {truth:?}");
+    }
+}
+
 /// The harder a barrier of Hunt and Crossley, the less the swing acts during the contact, whose restitution e then
 /// obeys `G(-lambda e v) = G(lambda v)` with `G(z) = z - ln(1 + z)`; Runge-Kutta agrees at every hardness.
 #[test]
@@ -285,14 +298,7 @@ fn a_contact_that_loses_energy_is_proved() {
         let setup =
             Setup { stiffness, loss: Some(ContactLoss::Damping(damping)), ..Setup::default() };
         let solved = solve(setup).expect("an impact");
-        for (quantity, (name, truth)) in solved.quantities().into_iter().zip(impact.in_order()) {
-            assert!(agrees(truth, quantity.runge_kutta, 1e-9), "{name} at {stiffness}: {truth:?}");
-        }
-        let (judged, _) = solved.losses().expect("a loss");
-        for (quantity, (name, truth)) in judged.iter().zip(impact.losses().expect("a loss")) {
-            assert!(agrees(truth, quantity.runge_kutta, 1e-9), "{name} at {stiffness}: {truth:?}");
-            assert!(truth.radius.value() < 1e-28, "{name} at {stiffness}: {truth:?}");
-        }
+        assert_losses_are_those_of_runge_kutta(&solved, &impact);
         let [(_, restitution), _] = impact.losses().expect("a loss");
         let scaled = damping * to_f64(&impact.speed.middle);
         let function = |z: f64| z - z.ln_1p();
@@ -332,14 +338,7 @@ fn a_contact_with_a_dashpot_is_proved() {
         let impact =
             enclose_dashpot_impact(&fraction(3, 2), &fraction(323, 1000), &numbers[0], &numbers[1])
                 .expect("a proof");
-        for (quantity, (name, truth)) in solved.quantities().into_iter().zip(impact.in_order()) {
-            assert!(agrees(truth, quantity.runge_kutta, 1e-9), "{name} at {stiffness}: {truth:?}");
-        }
-        let (judged, _) = solved.losses().expect("a loss");
-        for (quantity, (name, truth)) in judged.iter().zip(impact.losses().expect("a loss")) {
-            assert!(agrees(truth, quantity.runge_kutta, 1e-9), "{name} at {stiffness}: {truth:?}");
-            assert!(truth.radius.value() < 1e-28, "{name} at {stiffness}: {truth:?}");
-        }
+        assert_losses_are_those_of_runge_kutta(&solved, &impact);
         let [(_, restitution), _] = impact.losses().expect("a loss");
         (to_f64(&restitution.middle) / alone - 1.0).abs()
     });

@@ -9,7 +9,7 @@ use crate::exact::Rational;
 use crate::export::json;
 use crate::expr::{Expr, parse_expression};
 use crate::impact::contact::Dashpot;
-use crate::impact::{ContactLoss, Impact, Setup, Side, compare, solve};
+use crate::impact::{Impact, Setup, Side, compare, solve};
 use crate::problem::{BarrierSide, Problem};
 use crate::report::{self, ImpactCertificateReport};
 use crate::verify::Verdict;
@@ -48,7 +48,7 @@ pub struct ImpactArguments {
     force: Option<String>,
     /// The law of the contact in the derived phases, such as power-law; without it exact; all for a
     /// table of every law; or one that loses energy ("kelvin-voigt restitution=0.8", hunt-crossley,
-    /// kelvin-voigt-no-pull)
+    /// kelvin-voigt-no-pull), "all restitution=0.8" for a table of those
     #[arg(long, value_name = "LAW")]
     contact: Option<String>,
     /// The barrier is on the left of xc, and the release at x = A
@@ -58,7 +58,8 @@ pub struct ImpactArguments {
     #[arg(long)]
     compare: bool,
     /// Prove the numbers of the impact of a pendulum and a barrier whose force is a power of the
-    /// depth, with a loss by Hunt and Crossley or in a dashpot, and how far each closed form is off
+    /// depth or a sum of them, with a loss by Hunt and Crossley or in a dashpot, and how far each
+    /// closed form is off
     #[arg(long, conflicts_with = "compare")]
     certify: bool,
     #[command(flatten)]
@@ -135,14 +136,7 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
         return Err(Failure::because("a number of the impact is not finite".to_owned()));
     };
     let force = power_laws(&setup, stiffness)?;
-    let dashpot = setup.loss.and_then(ContactLoss::dashpot);
-    if dashpot == Some(Dashpot::DoesNotPull) {
-        return Err(Failure::Usage(
-            "--certify follows a contact until its depth is zero again, and that of kelvin-voigt-no-pull is left before: take \
-             kelvin-voigt or hunt-crossley, or leave out --certify, whose place Runge-Kutta takes"
-                .to_owned(),
-        ));
-    }
+    let dashpot = setup.loss.and_then(|loss| loss.law.dashpot());
     let lossless = match setup.loss {
         None => Some(enclose_impact(amplitude, barrier, &force)?),
         Some(_) => None,
@@ -152,10 +146,13 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
     let damping = as_written(impact.damping).filter(|_| lossless.is_none());
     let enclosure = match (lossless, &damping) {
         (Some(lossless), _) => lossless,
-        (None, Some(damping)) if dashpot.is_some() => {
-            enclose_dashpot_impact(amplitude, barrier, stiffness, damping)?
-        }
-        (None, Some(damping)) => enclose_lossy_impact(amplitude, barrier, &force, damping)?,
+        (None, Some(damping)) => match dashpot {
+            Some(dashpot) => {
+                let pulls = dashpot == Dashpot::Pulls;
+                enclose_dashpot_impact(amplitude, barrier, stiffness, damping, pulls)?
+            }
+            None => enclose_lossy_impact(amplitude, barrier, &force, damping)?,
+        },
         (None, None) => return Err(Failure::because("the damping is not finite".to_owned())),
     };
     let report = ImpactCertificateReport {

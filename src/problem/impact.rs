@@ -3,11 +3,11 @@
 
 use super::{Barrier, BarrierSide, Order, Problem, ProblemError, ReadingCommand, refused};
 use crate::expr::{Expr, parse_expression};
-use crate::impact::contact::{ContactLaw, Dashpot};
+use crate::impact::contact::{ContactLaw, LossyLaw};
 use crate::impact::hertz::{NotPositive, StiffnessDesign};
 use crate::impact::{
-    CollisionError, ContactDamping, ContactLoss, ContactScales, Rule, Setup, Side, SpeedUnit,
-    UnknownRule,
+    CollisionError, ContactDamping, ContactLoss, ContactScales, LossAmount, Rule, Setup, Side,
+    SpeedUnit, UnknownRule,
 };
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Method};
@@ -61,10 +61,10 @@ impl TryFrom<&Problem> for Setup {
             );
         }
         let swing = swing(problem)?;
-        let lossy = LossyLaw::from_problem(problem)?;
-        let has_dashpot = lossy.as_ref().is_some_and(|law| law.dashpot.is_some());
+        let lossy = LossInWords::from_problem(problem)?;
+        let dashpot = lossy.as_ref().and_then(|words| words.law?.dashpot());
         let force = match force(problem)? {
-            None if has_dashpot => {
+            None if dashpot.is_some() => {
                 Some(Expr::from(Symbol::new("gamma")) * Expr::from(Symbol::new("d")))
             }
             force => force,
@@ -100,7 +100,9 @@ impl TryFrom<&Problem> for Setup {
         let has_stiffness = |force: &Expr| force.contains(Symbol::new("gamma"));
         let gamma_follows = !gives_stiffness && force.as_ref().is_none_or(has_stiffness);
         let units = problem.units(is_hertz, gamma_follows)?;
-        let is_all = |name: &Option<String>| name.as_deref() == Some(EVERY_LAW);
+        let is_all = |name: &Option<String>| {
+            name.as_deref().and_then(|name| name.split_whitespace().next()) == Some(EVERY_LAW)
+        };
         Ok(Self {
             swing,
             values: given.others,
@@ -281,29 +283,27 @@ fn linearisation(problem: &Problem) -> Result<Rule, UnknownRule> {
     }
 }
 
-/// A law of a contact that loses energy, by its name: `hunt-crossley`, `kelvin-voigt restitution=0.8`.
-struct LossyLaw {
-    /// The name.
-    name: &'static str,
-    /// The dashpot; `None` for Hunt and Crossley.
-    dashpot: Option<Dashpot>,
-    /// The restitution that stands beside the name.
+/// What a problem says of a contact that loses energy: `kelvin-voigt restitution=0.8`, `all restitution=0.8`.
+struct LossInWords {
+    /// The law; `None` for every one.
+    law: Option<LossyLaw>,
+    /// The restitution that stands beside its name.
     restitution: Option<f64>,
 }
 
-impl LossyLaw {
-    /// The law of the problem; `None` for one without loss.
+impl LossInWords {
+    /// The words of the problem; `None` for a law without loss, and for a table of those.
     ///
     /// # Errors
     /// Words beside the name that are not a restitution.
     fn from_problem(problem: &Problem) -> Result<Option<Self>, ProblemError> {
         let Some(text) = &problem.contact.law else { return Ok(None) };
         let mut words = text.split_whitespace();
-        let first = words.next().unwrap_or_default();
-        let hunt_crossley = (ContactLoss::Damping(1.0).name(), None);
-        let dashpots = Dashpot::ALL.map(|dashpot| (dashpot.name(), Some(dashpot)));
-        let mut laws = std::iter::once(hunt_crossley).chain(dashpots);
-        let Some((name, dashpot)) = laws.find(|(name, _)| *name == first) else { return Ok(None) };
+        let name = words.next().unwrap_or_default();
+        let law = LossyLaw::from_name(name);
+        if law.is_none() && name != EVERY_LAW {
+            return Ok(None);
+        }
         let mut restitution = None;
         for word in words {
             let value = word.strip_prefix("restitution=").and_then(|value| value.parse().ok());
@@ -314,14 +314,19 @@ impl LossyLaw {
             };
             restitution = Some(value);
         }
-        Ok(Some(Self { name, dashpot, restitution }))
+        Ok((law.is_some() || restitution.is_some()).then_some(Self { law, restitution }))
+    }
+
+    /// The name of the law, as it is typed.
+    fn name(&self) -> &'static str {
+        self.law.map_or(EVERY_LAW, LossyLaw::name)
     }
 }
 
 /// The loss in the contact.
 fn loss(
     problem: &Problem,
-    lossy: Option<&LossyLaw>,
+    lossy: Option<&LossInWords>,
     stiffness: f64,
 ) -> Result<Option<ContactLoss>, ProblemError> {
     let contact = &problem.contact;
@@ -348,8 +353,9 @@ fn loss(
     let (key, value) = match given[..] {
         [] => {
             return match lossy {
-                Some(LossyLaw { name, .. }) => refused(format!(
-                    "the law {name} loses energy, and says not how much: write \"{name} restitution=0.8\""
+                Some(words) => refused(format!(
+                    "the law {name} loses energy, and says not how much: write \"{name} restitution=0.8\"",
+                    name = words.name()
                 )),
                 None => Ok(None),
             };
@@ -375,12 +381,12 @@ fn loss(
     if !(value.is_finite() && value >= 0.0) {
         return no_damping();
     }
-    if let Some(LossyLaw { name, dashpot: Some(_), .. }) = lossy
-        && (!of_restitution || contact.at_speed.is_some())
-    {
+    let law = lossy.and_then(|words| words.law).unwrap_or(LossyLaw::HuntCrossley);
+    if law.dashpot().is_some() && (!of_restitution || contact.at_speed.is_some()) {
         let key = if of_restitution { "at_speed" } else { key };
         return refused(format!(
-            "[contact] {key} says nothing beside {name}, whose restitution is the same at any speed: give that alone"
+            "[contact] {key} says nothing beside {}, whose restitution is the same at any speed: give that alone",
+            law.name()
         ));
     }
     // This value means a contact without loss.
@@ -394,18 +400,16 @@ fn loss(
     }
     let laws = [("law", &contact.law), ("linearisation", &contact.linearisation)];
     let without_loss = |(key, name): &(&str, &Option<String>)| {
-        name.is_some() && !(*key == "law" && lossy.is_some())
+        let is_every = name.as_deref() == Some(EVERY_LAW);
+        name.is_some() && !(*key == "law" && (lossy.is_some() || is_every))
     };
     if let Some((law, _)) = laws.into_iter().find(without_loss) {
         return refused(format!(
             "[contact] {law} is that of a contact without loss: beside {key} the law is that of Hunt and Crossley, leave one of them out"
         ));
     }
-    if let Some(LossyLaw { dashpot: Some(dashpot), .. }) = lossy {
-        return Ok(Some(ContactLoss::Dashpot { dashpot: *dashpot, restitution: value }));
-    }
     if of_restitution && contact.at_speed.is_none() {
-        return Ok(Some(ContactLoss::Restitution(value)));
+        return Ok(Some(ContactLoss { law, amount: LossAmount::Restitution(value) }));
     }
     let StiffnessDesign { mass, length, gravity, .. } = problem.design()?;
     let needed: &[(&'static str, f64)] = match key {
@@ -433,7 +437,9 @@ fn loss(
         return Ok(None);
     };
     match damping.in_form(ContactDamping::MuOverGamma(0.0), &scales)?.value() {
-        ratio if ratio.is_finite() => Ok(Some(ContactLoss::Damping(ratio))),
+        ratio if ratio.is_finite() => {
+            Ok(Some(ContactLoss { law, amount: LossAmount::Damping(ratio) }))
+        }
         _ => no_damping(),
     }
 }

@@ -6,10 +6,10 @@ use super::{Block, Document, percent};
 use crate::audit::paper;
 use crate::decimal::{decimal, significant};
 use crate::impact::contact::power_law::duration_factor;
-use crate::impact::contact::{ContactLaw, Dashpot};
+use crate::impact::contact::{ContactLaw, Dashpot, LossyContact, LossyLaw};
 use crate::impact::{
-    Attempt, ContactLoss, DerivedContact, Flight, Form, Impact, ImpactQuantity, ImpactSymbols,
-    JudgedPhases, Modulus, PhaseReading, Setup, SiImpact, Side, YieldCheck,
+    Attempt, DerivedContact, Flight, Form, Impact, ImpactQuantity, ImpactSymbols, JudgedPhases,
+    LossAmount, Modulus, PhaseReading, Setup, SiImpact, Side, YieldCheck,
 };
 use crate::solution::law::DisplayedLaw;
 use crate::solution::{AmplitudeConvention, Solution};
@@ -51,6 +51,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
         sections.push(std::iter::once(heading).chain(tried).collect());
     }
     sections.extend(contact_laws(impact));
+    sections.extend(lossy_laws(impact));
     sections.push(judged(impact, tolerance));
     if impact.setup.units.is_some() {
         sections.push(match impact.si() {
@@ -112,12 +113,14 @@ pub(super) fn problem_blocks(
         blocks.push(value(gamma, setup.stiffness, Some(setup.stiffness_source.as_str())));
     }
     blocks.extend(setup.loss.map(|loss| {
-        let source = match loss {
-            ContactLoss::Damping(_) => "given, in units of the equation",
-            ContactLoss::Restitution(_) => {
+        let source = match (loss.amount, loss.law) {
+            (LossAmount::Damping(_), _) => "given, in units of the equation",
+            (LossAmount::Restitution(_), LossyLaw::HuntCrossley) => {
                 "for the restitution asked for, at the speed of the touch"
             }
-            ContactLoss::Dashpot { .. } => "for the restitution asked for, at any speed",
+            (LossAmount::Restitution(_), LossyLaw::Dashpot(_)) => {
+                "for the restitution asked for, at any speed"
+            }
         };
         value(letters.damping, damping, Some(source))
     }));
@@ -283,43 +286,51 @@ fn law_of_contact<'a>(impact: &Impact, contact: &DerivedContact) -> Vec<Block<'a
             }
             lines
         }
-        DerivedContact::Spring(contact) => {
-            let damping = impact.letters.damping;
-            let zeta = decimal(contact.damping_ratio);
-            let mut lines = vec![
+        DerivedContact::Lossy(contact) => lossy_contact(contact, impact.letters.damping),
+    };
+    lines.into_iter().map(Block::Note).collect()
+}
+
+/// The formulas of a contact that loses energy, with this letter for its damping.
+fn lossy_contact(contact: &LossyContact, damping: Symbol) -> Vec<String> {
+    let mut lines = match contact {
+        LossyContact::Dashpot(contact) => {
+            let stiffness = decimal(contact.stiffness);
+            // Beyond critical damping the angle is imaginary: b = i a.
+            let (is, angle, cotangent) = match contact.damping_ratio > 1.0 {
+                true => ("cosh a", 'a', "coth"),
+                false => ("cos b", 'b', "cot"),
+            };
+            let restitution = decimal(contact.restitution);
+            vec![
                 "the contact is a spring with a dashpot, the force of the swing left out of it:"
                     .to_owned(),
-                format!("  d'' = -{} (d + {damping} d')", decimal(contact.stiffness)),
+                match contact.dashpot {
+                    Dashpot::Pulls => format!("  d'' = -{stiffness} (d + {damping} d')"),
+                    Dashpot::DoesNotPull => {
+                        format!("  d'' = -{stiffness} max(d + {damping} d', 0)")
+                    }
+                },
                 format!(
-                    "  zeta = {damping} sqrt({})/2 = {zeta} = cos b",
-                    decimal(contact.stiffness)
+                    "  zeta = {damping} sqrt({stiffness})/2 = {} = {is}",
+                    decimal(contact.damping_ratio)
                 ),
-            ];
-            lines.push(match contact.dashpot {
-                Dashpot::Pulls => format!(
-                    "  e = exp(-pi cot b) = {}: it pulls on the way out, until d = 0",
-                    decimal(contact.restitution)
-                ),
-                Dashpot::DoesNotPull => format!(
-                    "  e = exp(-2 b cot b) = {}: it does not pull, and is left at the depth {damping} e v",
-                    decimal(contact.restitution)
-                ),
-            });
-            lines.push(format!(
-                "  greatest force {} at the depth {}, energy lost {} per unit of mass",
-                decimal(contact.peak_force),
-                decimal(contact.peak_depth),
-                decimal(contact.energy_lost)
-            ));
-            lines
+                match contact.dashpot {
+                    Dashpot::Pulls => format!(
+                        "  e = exp(-pi cot b) = {restitution}: it pulls on the way out, until d = 0"
+                    ),
+                    Dashpot::DoesNotPull => format!(
+                        "  e = exp(-2 {angle} {cotangent} {angle}) = {restitution}: it does not pull, and is left at the depth {damping} e v"
+                    ),
+                },
+            ]
         }
-        DerivedContact::Damped(contact) => {
+        LossyContact::HuntCrossley(contact) => {
             let product = contact.damping * contact.speed;
             let small = 1.0 - 2.0 / 3.0 * product;
             let off = 100.0 * (small / contact.restitution - 1.0).abs();
             let off = if off < 10.0 { significant(off, 2) } else { format!("{off:.0}") };
             let (stiffness, exponent) = (decimal(contact.stiffness), decimal(contact.exponent));
-            let damping = impact.letters.damping;
             vec![
                 "the contact is by Hunt and Crossley, the force of the swing left out of it:"
                     .to_owned(),
@@ -334,20 +345,57 @@ fn law_of_contact<'a>(impact: &Impact, contact: &DerivedContact) -> Vec<Block<'a
                     decimal(small)
                 ),
                 format!("  (to 1 % up to {damping} v = {SMALL_DAMPING})"),
-                format!(
-                    "  greatest force {} at the depth {}, energy lost {} per unit of mass",
-                    decimal(contact.peak_force),
-                    decimal(contact.peak_depth),
-                    decimal(contact.energy_lost)
-                ),
             ]
         }
     };
-    lines.into_iter().map(Block::Note).collect()
+    let numbers = contact.numbers();
+    lines.push(format!(
+        "  greatest force {} at the depth {}, energy lost {} per unit of mass",
+        decimal(numbers.peak_force),
+        decimal(numbers.peak_depth),
+        decimal(numbers.energy_lost)
+    ));
+    lines
 }
 
 /// Largest lambda v for which the first term of the restitution is accurate to 1 %.
 const SMALL_DAMPING: f64 = 0.15;
+
+/// The table of every law that loses energy.
+fn lossy_laws<'a>(impact: &Impact) -> Option<Vec<Block<'a>>> {
+    let wanted = impact.lossy_laws.first()?.closed_form[3];
+    let damping = impact.letters.damping;
+    let heading = format!(
+        "Every law that loses energy, for the restitution {} at the speed {} of the touch by the energy",
+        decimal(wanted),
+        decimal(impact.energy_speed)
+    );
+    let rows = impact.lossy_laws.iter().flat_map(|row| {
+        let numbers = row.closed_form.map(decimal);
+        let errors = row.errors().map(percent);
+        let line =
+            |first: [String; 3], cells: [String; 4]| first.into_iter().chain(cells).collect();
+        let first = [row.law.name().to_owned(), decimal(row.stiffness), decimal(row.damping)];
+        [line(first, numbers), line(Default::default(), errors)]
+    });
+    let head = ["", "stiffness", "lambda", "duration", "penetration", "peak force", "restitution"];
+    let note = |text: String| Block::Note(text);
+    let is_spring = impact.lossy_laws.windows(2).all(|pair| pair[0].stiffness == pair[1].stiffness);
+    let springs =
+        "the springs have the energy of the barrier's force at its greatest depth without loss";
+    let notes = [
+        format!("hunt-crossley: the force of the barrier times 1 + {damping} d'; kelvin-voigt: stiffness (d + {damping} d')"),
+        "below each law the errors of its closed form, without the force of the swing, against Runge-Kutta with it;".to_owned(),
+        "forces are per unit of mass".to_owned(),
+    ];
+    let springs = (!is_spring).then(|| springs.to_owned());
+    Some(
+        [Block::Heading(heading), Block::table(head, rows)]
+            .into_iter()
+            .chain(springs.into_iter().chain(notes).map(note))
+            .collect(),
+    )
+}
 
 /// The table of every law, and the reasons of those that do not apply.
 fn contact_laws(impact: &Impact) -> Vec<Vec<Block<'_>>> {

@@ -5,7 +5,8 @@ use super::{Block, Document};
 use crate::certificate::{Enclosure, ImpactEnclosure, PowerLaw, SizeBounds};
 use crate::decimal::{exact_decimal, not_above_typed};
 use crate::exact::Rational;
-use crate::impact::{ContactLoss, Impact, PhaseReading};
+use crate::impact::contact::Dashpot;
+use crate::impact::{Impact, PhaseReading};
 use crate::verify::Verdict;
 
 /// An impact and its proved enclosures.
@@ -94,10 +95,13 @@ pub fn impact_certificate<'a>(report: &ImpactCertificateReport<'a>) -> Document<
         }
     }
     if let Some(damping) = report.damping {
-        let dashpot = report.impact.setup.loss.and_then(ContactLoss::dashpot);
+        let dashpot = report.impact.setup.loss.and_then(|loss| loss.law.dashpot());
         let words = match dashpot {
             None => "lambda, its damping: the force is times 1 + lambda d'",
-            Some(_) => "lambda, its damping: the force is stiffness (d + lambda d')",
+            Some(Dashpot::Pulls) => "lambda, its damping: the force is stiffness (d + lambda d')",
+            Some(Dashpot::DoesNotPull) => {
+                "lambda, its damping: the force is stiffness max(d + lambda d', 0)"
+            }
         };
         given.push((words, exactly(damping)));
     }

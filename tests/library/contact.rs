@@ -6,10 +6,12 @@ use std::f64::consts::PI;
 use lindstedt::Oscillator;
 use lindstedt::expr::parse_expression;
 use lindstedt::impact::Rule;
-use lindstedt::impact::contact::ContactLaw;
+use lindstedt::impact::contact::{ContactLaw, LossyLaw};
 use lindstedt::impact::hertz::{self, StiffnessDesign, elastic_force};
 use lindstedt::impact::{self, PhaseReading, Setup, Side};
-use lindstedt::impact::{ContactLoss, DerivedContact, Integrator, Model, Settings, Start};
+use lindstedt::impact::{
+    ContactLoss, DerivedContact, Integrator, LossAmount, Model, Settings, Start,
+};
 use lindstedt::impact::{ContactSpeed, Form, ImpactProblem, ThreePhases, three_phases};
 use lindstedt::impact::{TrueImpact, deviation, true_impact};
 use lindstedt::numeric::ode::IntegrationOptions;
@@ -650,11 +652,14 @@ fn laws_of_a_power_are_refused_where_there_is_none() {
 /// A hard spring with a dashpot gives the restitution asked for; one that does not pull lets go before.
 #[test]
 fn a_dashpot_has_the_restitution_asked_for_at_any_speed() {
-    use lindstedt::impact::contact::Dashpot;
+    use lindstedt::impact::contact::{Dashpot, LossyContact};
     for dashpot in Dashpot::ALL {
         for (restitution, release) in [(0.1, -1.5), (0.5, -1.5), (0.5, -0.7), (0.95, -1.5)] {
             let setup = Setup {
-                loss: Some(ContactLoss::Dashpot { dashpot, restitution }),
+                loss: Some(ContactLoss {
+                    law: LossyLaw::Dashpot(dashpot),
+                    amount: LossAmount::Restitution(restitution),
+                }),
                 force: Some("gamma*d".parse().expect("a force")),
                 stiffness: 1e8,
                 release,
@@ -663,13 +668,17 @@ fn a_dashpot_has_the_restitution_asked_for_at_any_speed() {
             let found = impact::solve(setup).expect("an impact");
             let truth = found.truth.restitution();
             assert!((truth / restitution - 1.0).abs() < 2e-3, "{dashpot:?}: {truth}");
-            let Some(DerivedContact::Spring(spring)) = &found.contact else { panic!("no spring") };
+            let Some(DerivedContact::Lossy(contact)) = &found.contact else { panic!("no loss") };
+            let LossyContact::Dashpot(spring) = contact.as_ref() else { panic!("no spring") };
             assert_eq!(spring.dashpot, dashpot);
             assert!((spring.duration / found.truth.duration - 1.0).abs() < 2e-3);
             assert_eq!(found.verdicts(0.02), [Verdict::Pass], "{dashpot:?} {restitution}");
         }
         let setup = Setup {
-            loss: Some(ContactLoss::Dashpot { dashpot, restitution: 0.5 }),
+            loss: Some(ContactLoss {
+                law: LossyLaw::Dashpot(dashpot),
+                amount: LossAmount::Restitution(0.5),
+            }),
             ..Setup::default()
         };
         let refused = impact::solve(setup).expect_err("no spring").to_string();
@@ -677,11 +686,57 @@ fn a_dashpot_has_the_restitution_asked_for_at_any_speed() {
     }
 }
 
+/// Of a hard barrier every law has the restitution asked for also in the true motion; the springs reach without loss as
+/// deep as the barrier, and are the barrier itself where that is a spring.
+#[test]
+fn every_law_that_loses_energy_has_the_restitution_asked_for() {
+    use lindstedt::impact::contact::PowerLaw;
+    for (force, exponent) in [("gamma*d^(3/2)", 1.5), ("gamma*d^2", 2.0), ("gamma*d", 1.0)] {
+        for wanted in [0.3, 0.7, 0.95] {
+            let setup = Setup {
+                force: Some(force.parse().expect("a force")),
+                stiffness: 1e9,
+                every_contact_law: true,
+                loss: Some(ContactLoss {
+                    law: LossyLaw::HuntCrossley,
+                    amount: LossAmount::Restitution(wanted),
+                }),
+                ..Setup::default()
+            };
+            let found = impact::solve(setup).expect("an impact");
+            assert!(found.contact_laws.is_empty());
+            assert_eq!(
+                found.lossy_laws.iter().map(|row| row.law).collect::<Vec<_>>(),
+                LossyLaw::ALL
+            );
+            let lossless = PowerLaw::new(exponent, 1e9, found.energy_speed).expect("a contact");
+            for row in &found.lossy_laws {
+                let [_, _, _, restitution] = row.closed_form;
+                assert!((restitution / wanted - 1.0).abs() < 1e-11, "{force}: {row:?}");
+                let allowed = if exponent == 2.0 { 2e-2 } else { 5e-3 };
+                assert!(row.errors().iter().all(|error| error.abs() < allowed), "{force}: {row:?}");
+                let spring = found.energy_speed / row.stiffness.sqrt();
+                match row.law {
+                    LossyLaw::HuntCrossley => assert_eq!(row.stiffness, 1e9),
+                    LossyLaw::Dashpot(_) => {
+                        assert!((spring / lossless.depth - 1.0).abs() < 1e-9, "{force}: {row:?}");
+                    }
+                }
+            }
+            let own = &found.lossy_laws[0];
+            assert!((own.runge_kutta[2] / found.greatest_force - 1.0).abs() < 1e-9, "{own:?}");
+        }
+    }
+}
+
 #[test]
 fn the_restitution_asked_for_is_the_one_that_is_simulated() {
     for wanted in [0.05, 0.2, 0.5, 0.8, 0.95, 0.999] {
         let setup = Setup {
-            loss: Some(ContactLoss::Restitution(wanted)),
+            loss: Some(ContactLoss {
+                law: LossyLaw::HuntCrossley,
+                amount: LossAmount::Restitution(wanted),
+            }),
             stiffness: 1e10,
             tolerance: 1e-3,
             ..Setup::default()
@@ -729,8 +784,11 @@ fn the_restitution_asked_for_is_the_one_that_is_simulated() {
 
 #[test]
 fn hardly_damped_is_undamped() {
-    let damped = impact::solve(Setup { loss: Some(ContactLoss::Damping(1e-12)), ..pendulum(1e6) })
-        .expect("an impact");
+    let damped = impact::solve(Setup {
+        loss: Some(ContactLoss { law: LossyLaw::HuntCrossley, amount: LossAmount::Damping(1e-12) }),
+        ..pendulum(1e6)
+    })
+    .expect("an impact");
     let undamped = impact::solve(pendulum(1e6)).expect("an impact");
     let numbers =
         |impact: &impact::Impact| impact.quantities().map(|quantity| quantity.runge_kutta);

@@ -7,8 +7,8 @@ use lindstedt::certificate::{
 };
 use lindstedt::exact::{Rational, from_f64, to_f64};
 use lindstedt::expr::Expr;
-use lindstedt::impact::contact::Dashpot;
-use lindstedt::impact::{ContactLoss, Impact, Setup, solve};
+use lindstedt::impact::contact::{Dashpot, LossyLaw};
+use lindstedt::impact::{ContactLoss, Impact, LossAmount, Setup, solve};
 use num_traits::Signed as _;
 use proptest::prelude::*;
 
@@ -295,8 +295,14 @@ fn a_contact_that_loses_energy_is_proved() {
         let impact =
             enclose_lossy_impact(&fraction(3, 2), &fraction(323, 1000), &law, &exact(damping))
                 .expect("a proof");
-        let setup =
-            Setup { stiffness, loss: Some(ContactLoss::Damping(damping)), ..Setup::default() };
+        let setup = Setup {
+            stiffness,
+            loss: Some(ContactLoss {
+                law: LossyLaw::HuntCrossley,
+                amount: LossAmount::Damping(damping),
+            }),
+            ..Setup::default()
+        };
         let solved = solve(setup).expect("an impact");
         assert_losses_are_those_of_runge_kutta(&solved, &impact);
         let [(_, restitution), _] = impact.losses().expect("a loss");
@@ -320,41 +326,59 @@ fn a_contact_that_loses_energy_is_proved() {
 }
 
 /// The harder a spring with a dashpot, the less the swing acts during the contact, whose restitution is then
-/// `exp(-pi zeta/sqrt(1 - zeta^2))`; Runge-Kutta agrees at every hardness.
+/// `exp(-pi zeta/sqrt(1 - zeta^2))`, or without pull `exp(-2 b cot b)` with `zeta = cos b`; Runge-Kutta agrees at every
+/// hardness.
 #[test]
 fn a_contact_with_a_dashpot_is_proved() {
-    let zeta = 0.2_f64;
-    let alone = (-std::f64::consts::PI * zeta / (1.0 - zeta * zeta).sqrt()).exp();
-    let errors = [1e4, 1e6, 1e8].map(|stiffness: f64| {
-        let setup = Setup {
-            stiffness,
-            force: Some("gamma*d".parse().expect("a force")),
-            loss: Some(ContactLoss::Dashpot { dashpot: Dashpot::Pulls, restitution: alone }),
-            ..Setup::default()
-        };
-        let solved = solve(setup).expect("an impact");
-        assert!((solved.damping / (2.0 * zeta / stiffness.sqrt()) - 1.0).abs() < 1e-12);
-        let numbers = [exact(stiffness), exact(solved.damping)];
-        let impact =
-            enclose_dashpot_impact(&fraction(3, 2), &fraction(323, 1000), &numbers[0], &numbers[1])
-                .expect("a proof");
-        assert_losses_are_those_of_runge_kutta(&solved, &impact);
-        let [(_, restitution), _] = impact.losses().expect("a loss");
-        (to_f64(&restitution.middle) / alone - 1.0).abs()
-    });
-    // The part of the swing falls as the depth does, as gamma^(-1/2): by 10 each time.
-    assert!(
-        errors.windows(2).all(|pair| (0.08..0.12).contains(&(pair[1] / pair[0]))),
-        "{errors:?}"
-    );
+    let (zeta, pi) = (0.2_f64, std::f64::consts::PI);
+    let cotangent = zeta / (1.0 - zeta * zeta).sqrt();
+    for (dashpot, alone) in [
+        (Dashpot::Pulls, (-pi * cotangent).exp()),
+        (Dashpot::DoesNotPull, (-2.0 * zeta.acos() * cotangent).exp()),
+    ] {
+        let errors = [1e4, 1e6, 1e8].map(|stiffness: f64| {
+            let setup = Setup {
+                stiffness,
+                force: Some("gamma*d".parse().expect("a force")),
+                loss: Some(ContactLoss {
+                    law: LossyLaw::Dashpot(dashpot),
+                    amount: LossAmount::Restitution(alone),
+                }),
+                ..Setup::default()
+            };
+            let solved = solve(setup).expect("an impact");
+            assert!((solved.damping / (2.0 * zeta / stiffness.sqrt()) - 1.0).abs() < 1e-12);
+            let numbers = [exact(stiffness), exact(solved.damping)];
+            let impact = enclose_dashpot_impact(
+                &fraction(3, 2),
+                &fraction(323, 1000),
+                &numbers[0],
+                &numbers[1],
+                dashpot == Dashpot::Pulls,
+            )
+            .expect("a proof");
+            assert_losses_are_those_of_runge_kutta(&solved, &impact);
+            let [(_, restitution), _] = impact.losses().expect("a loss");
+            (to_f64(&restitution.middle) / alone - 1.0).abs()
+        });
+        // The part of the swing falls as the depth does, as gamma^(-1/2): by 10 each time.
+        assert!(
+            errors.windows(2).all(|pair| (0.08..0.12).contains(&(pair[1] / pair[0]))),
+            "{dashpot:?}: {errors:?}"
+        );
+    }
     let (amplitude, barrier) = (fraction(3, 2), fraction(323, 1000));
     let stiffness = fraction(10_000, 1);
     let by_energy = PowerLaw { stiffness: stiffness.clone(), exponent: fraction(1, 1) };
     let by_energy = enclose_impact(&amplitude, &barrier, &[by_energy]).expect("a proof");
-    let by_motion = enclose_dashpot_impact(&amplitude, &barrier, &stiffness, &fraction(0, 1));
-    let by_motion = by_motion.expect("a proof");
-    for ((name, one), (_, other)) in by_energy.in_order().into_iter().zip(by_motion.in_order()) {
-        let apart = to_f64(&(&one.middle - &other.middle).abs());
-        assert!(apart <= one.radius.value() + other.radius.value(), "{name}: {apart}");
+    for pulls in [true, false] {
+        let none = fraction(0, 1);
+        let by_motion = enclose_dashpot_impact(&amplitude, &barrier, &stiffness, &none, pulls);
+        let by_motion =
+            by_motion.expect("a proof").in_order().map(|(name, own)| (name, own.clone()));
+        for ((name, one), (_, other)) in by_energy.in_order().into_iter().zip(by_motion) {
+            let apart = to_f64(&(&one.middle - &other.middle).abs());
+            assert!(apart <= one.radius.value() + other.radius.value(), "{name}: {apart}");
+        }
     }
 }

@@ -13,11 +13,12 @@ use super::{DocumentKind, JsonError, check_kind};
 use crate::audit::paper;
 #[cfg(feature = "schema")]
 use crate::impact::Rule;
-use crate::impact::contact::{ContactErrors, ContactMotion, ContactRow, SineSeries};
+use crate::impact::contact::{ContactErrors, ContactMotion, ContactRow, LossyContact, SineSeries};
 #[cfg(feature = "schema")]
-use crate::impact::contact::{ContactLaw, Dashpot};
+use crate::impact::contact::{ContactLaw, LossyLaw};
 use crate::impact::{
-    self, ContactLoss, DerivedContact, Form, Impact, Modulus, PhaseReading, Setup, SiImpact, Side,
+    self, DerivedContact, Form, Impact, LossAmount, LossyRow, Modulus, PhaseReading, Setup,
+    SiImpact, Side,
 };
 use crate::verify::Verdict;
 
@@ -57,6 +58,10 @@ pub struct ImpactDocument {
     /// Every law of the contact at the speed of the touch by the energy; null where they are not
     /// asked for.
     pub contact_laws: Option<Vec<ContactLawRow>>,
+    /// Every law of a contact that loses energy, for one restitution at the speed of the touch by the energy; absent
+    /// where they are not asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub lossy_laws: Vec<LossyLawRow>,
     /// The time from the release to the touch, in units of time.
     pub time_to_contact: Quantity,
     /// The time from release to release, in units of time; where the contact loses energy, to the
@@ -411,6 +416,46 @@ pub struct ContactLawRow {
     pub max_deviation: Option<f64>,
 }
 
+/// One law of a contact that loses energy, in closed form without the force of the swing, beside Runge-Kutta with it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+pub struct LossyLawRow {
+    /// Its name, as in a problem file.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = LossyLaw::ALL.map(LossyLaw::name))))]
+    pub law: String,
+    /// The stiffness: the force per unit of mass at depth one at rest; of a spring with a dashpot that of equal
+    /// energy at the greatest depth of the barrier without loss.
+    pub stiffness: f64,
+    /// The damping lambda, time per unit of depth; of a dashpot in units of time.
+    pub lambda: f64,
+    /// The time from touch to release, in units of time.
+    pub duration: Judged,
+    /// The greatest depth.
+    pub penetration: Judged,
+    /// The greatest force of the contact, per unit of mass.
+    pub peak_force: Judged,
+    /// The speed after the contact over that before.
+    pub restitution: Judged,
+}
+
+impl LossyLawRow {
+    fn from_row(row: &LossyRow) -> Self {
+        let errors = row.errors();
+        let [duration, penetration, peak_force, restitution] = std::array::from_fn(|index| {
+            Judged { value: row.closed_form[index], error: errors[index] }
+        });
+        Self {
+            law: row.law.name().to_owned(),
+            stiffness: row.stiffness,
+            lambda: row.damping,
+            duration,
+            penetration,
+            peak_force,
+            restitution,
+        }
+    }
+}
+
 /// One number by each closed form and by Runge-Kutta; null for a reading that does not apply.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
@@ -544,7 +589,9 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
         derived_phases: phases(PhaseReading::Derived),
         contact: Contact { speed, penetration, duration },
         contact_damping: contact_damping(impact),
-        contact_laws: impact.setup.every_contact_law.then(|| contact_laws.collect()),
+        contact_laws: (impact.setup.every_contact_law && impact.setup.loss.is_none())
+            .then(|| contact_laws.collect()),
+        lossy_laws: impact.lossy_laws.iter().map(LossyLawRow::from_row).collect(),
         time_to_contact,
         period,
         verification: ImpactVerification {
@@ -651,16 +698,13 @@ impl Parameters {
             order,
             contact_law: match setup.loss {
                 None => setup.contact_law.name(),
-                Some(loss) => loss.name(),
+                Some(loss) => loss.law.name(),
             }
             .to_owned(),
             lambda: setup.loss.map(|_| damping),
-            restitution: match setup.loss {
-                Some(
-                    ContactLoss::Restitution(wanted)
-                    | ContactLoss::Dashpot { restitution: wanted, .. },
-                ) => Some(wanted),
-                Some(ContactLoss::Damping(_)) | None => None,
+            restitution: match setup.loss.map(|loss| loss.amount) {
+                Some(LossAmount::Restitution(wanted)) => Some(wanted),
+                Some(LossAmount::Damping(_)) | None => None,
             },
             linearisation: setup.rule.name().to_owned(),
             integrator_tolerance: setup.integrator_tolerance,
@@ -671,8 +715,7 @@ impl Parameters {
 #[cfg(feature = "schema")]
 fn law_names() -> Vec<&'static str> {
     let names = ContactLaw::ALL.map(ContactLaw::name);
-    let lossy = std::iter::once(ContactLoss::Damping(1.0).name());
-    names.into_iter().chain(lossy).chain(Dashpot::ALL.map(Dashpot::name)).collect()
+    names.into_iter().chain(LossyLaw::ALL.map(LossyLaw::name)).collect()
 }
 
 impl ContactLawRow {
@@ -696,19 +739,21 @@ impl ContactLawRow {
 
 fn contact_damping(impact: &Impact) -> Option<ContactDamping> {
     let ([restitution, exit_speed], energy_lost) = impact.losses()?;
-    let (contact, spring) = match &impact.contact {
-        Some(DerivedContact::Damped(contact)) => (Some(contact), None),
-        Some(DerivedContact::Spring(spring)) => (None, Some(spring)),
-        Some(DerivedContact::Elastic(_)) | None => (None, None),
+    let lossy = match &impact.contact {
+        Some(DerivedContact::Lossy(contact)) => Some(contact.as_ref()),
+        Some(DerivedContact::Elastic(_)) | None => None,
     };
-    let peak_force = contact.map(|contact| contact.peak_force);
+    let hunt_crossley = lossy.and_then(|contact| match contact {
+        LossyContact::HuntCrossley(contact) => Some(contact),
+        LossyContact::Dashpot(_) => None,
+    });
     Some(ContactDamping {
         lambda: impact.damping,
         restitution: quantity(impact, &restitution),
         exit_speed: quantity(impact, &exit_speed),
         energy_lost: quantity(impact, &energy_lost),
-        peak_force: peak_force.or(spring.map(|spring| spring.peak_force)),
-        small_damping: contact.map(|contact| {
+        peak_force: lossy.map(|contact| contact.numbers().peak_force),
+        small_damping: hunt_crossley.map(|contact| {
             let value = 1.0 - 2.0 / 3.0 * contact.damping * contact.speed;
             Judged { value, error: value / contact.restitution - 1.0 }
         }),

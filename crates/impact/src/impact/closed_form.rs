@@ -19,6 +19,7 @@ use super::derived::{DerivedContact, Flight};
 use super::error::ImpactError;
 use super::form::Form;
 use super::judge::{Deviation, TrueImpact};
+use super::lossy_laws::{LossyRow, greatest_force};
 use super::phases::{ContactSpeed, ImpactProblem, ThreePhases, three_phases};
 use super::setup::{ImpactSymbols, Setup};
 use super::trial::{Attempt, Trial};
@@ -49,10 +50,14 @@ pub struct Impact {
     pub flight: Option<Flight>,
     /// The contact of the derived column.
     pub contact: Option<DerivedContact>,
-    /// Every law of the contact at `energy_speed`; empty if not requested.
+    /// Every law of the contact at `energy_speed`; empty if not requested, and if it loses energy.
     pub contact_laws: Vec<ContactRow>,
+    /// Every law of a contact that loses energy; empty if not requested.
+    pub lossy_laws: Vec<LossyRow>,
     /// lambda of the contact; zero if it loses no energy.
     pub damping: f64,
+    /// The greatest force of the true contact, its damping included, per unit of mass.
+    pub greatest_force: f64,
     /// Attempts at the derived column, in order, with the reasons of their failure.
     pub tried: Vec<Attempt>,
     /// The speed at the touch from the energy, exact for the equation.
@@ -163,7 +168,9 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
             flight,
             contact,
             contact_laws: trial.contact_laws()?,
+            lossy_laws: trial.lossy_laws()?,
             damping: trial.collision.damping,
+            greatest_force: greatest_force(&trial.collision, &trial.truth),
             tried,
             energy_speed: trial.energy_speed,
             no_paper,

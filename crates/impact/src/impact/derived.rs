@@ -21,7 +21,7 @@ use std::f64::consts::PI;
 
 use num_complex::Complex64;
 
-use super::contact::{ContactMotion, DampedSpring, HuntCrossley, SineSeries};
+use super::contact::{ContactMotion, LossyContact, SineSeries};
 use super::error::ImpactError;
 use super::form::Form;
 use super::phases::{MotionPhase, ThreePhases};
@@ -202,10 +202,8 @@ const SERIES: f64 = 1e-6;
 pub enum DerivedContact {
     /// A contact without losses.
     Elastic(Box<ContactMotion>),
-    /// A contact with damping, without the force of the swing.
-    Damped(Box<HuntCrossley>),
-    /// A spring with a dashpot, without the force of the swing.
-    Spring(Box<DampedSpring>),
+    /// A contact that loses energy, without the force of the swing.
+    Lossy(Box<LossyContact>),
 }
 
 impl DerivedContact {
@@ -213,8 +211,10 @@ impl DerivedContact {
     fn numbers(&self, speed: f64) -> [f64; 3] {
         match self {
             Self::Elastic(contact) => [contact.depth, contact.duration, speed],
-            Self::Damped(contact) => [contact.depth, contact.duration, contact.exit_speed],
-            Self::Spring(contact) => [contact.depth, contact.duration, contact.exit_speed],
+            Self::Lossy(contact) => {
+                let numbers = contact.numbers();
+                [numbers.depth, numbers.duration, numbers.exit_speed]
+            }
         }
     }
 
@@ -222,20 +222,16 @@ impl DerivedContact {
     fn sine_series(&self) -> SineSeries {
         match self {
             Self::Elastic(contact) => contact.sine_series(SERIES),
-            Self::Damped(contact) => SineSeries::from_motion(
-                |time| contact.position(time),
-                contact.duration,
-                0.0,
-                contact.depth,
-                SERIES,
-            ),
-            Self::Spring(contact) => SineSeries::from_motion(
-                |time| contact.phase_point(time)[0],
-                contact.duration,
-                0.0,
-                contact.depth,
-                SERIES,
-            ),
+            Self::Lossy(contact) => {
+                let numbers = contact.numbers();
+                SineSeries::from_motion(
+                    |time| contact.position(time),
+                    numbers.duration,
+                    0.0,
+                    numbers.depth,
+                    SERIES,
+                )
+            }
         }
     }
 }
@@ -255,7 +251,7 @@ pub(super) fn phases_of(
     let [penetration, duration, exit_speed] = contact.numbers(speed);
     let (back, way_back) = match contact {
         DerivedContact::Elastic(_) => (flight.form(), touch),
-        DerivedContact::Damped(_) | DerivedContact::Spring(_) => {
+        DerivedContact::Lossy(_) => {
             let back = flight.passing(equations, barrier, exit_speed)?;
             (back.form(), back.touch(barrier)?.0)
         }

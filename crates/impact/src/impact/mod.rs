@@ -82,6 +82,7 @@ pub mod hertz;
 mod judge;
 mod lanes;
 mod linearisation;
+mod lossy_laws;
 mod materials;
 mod model;
 mod parameter;
@@ -115,6 +116,7 @@ pub use error::ImpactError;
 pub use form::{Form, TimeFunction};
 pub use judge::{Deviation, TrueImpact, assured_impact, deviation, true_impact};
 pub use linearisation::{LinearContactForce, LinearisationError, Rule, UnknownRule, fit};
+pub use lossy_laws::LossyRow;
 pub(crate) use materials::impacts_until;
 pub use materials::{
     DEFAULT_DURATION, DEFAULT_MATERIALS, DEFAULT_ZETA, FirstContact, HeldFixed, Material,
@@ -126,7 +128,7 @@ pub use model::{
 };
 pub use parameter::{Parameter, UnknownParameter};
 pub use phases::{ContactSpeed, FittedLine, ImpactProblem, MotionPhase, ThreePhases, three_phases};
-pub use setup::{ContactLoss, ImpactSymbols, Setup};
+pub use setup::{ContactLoss, ImpactSymbols, LossAmount, Setup};
 pub use si::{SiImpact, YieldCheck};
 pub(crate) use simulate::simulate_each;
 pub use simulate::{SimulationError, known_until, simulate, simulate_many};

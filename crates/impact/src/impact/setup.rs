@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 use num_integer::Integer as _;
 use num_traits::{Signed, ToPrimitive};
 
-use super::contact::{ContactLaw, Dashpot};
+use super::contact::{ContactLaw, Dashpot, LossyLaw};
 use super::error::ImpactError;
 use super::hertz::DEFAULT_STIFFNESS;
 use super::linearisation::Rule;
@@ -87,40 +87,24 @@ pub struct Setup {
     pub step_limit: u32,
 }
 
-/// The loss in a contact: by the law of Hunt and Crossley, or in a dashpot beside a spring.
+/// The loss in a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ContactLoss {
-    /// lambda, positive, in units of time over the unit of x: mu/gamma in equation (7).
-    Damping(f64),
-    /// The coefficient of restitution, above 0 and below 1, at the speed that the energy of the
-    /// swing gives the touch.
-    Restitution(f64),
-    /// The coefficient of restitution, above 0 and below 1, of a spring with a dashpot alone, the same at any
-    /// speed; the force of the barrier must be a spring.
-    Dashpot {
-        /// Whether it pulls on the way out.
-        dashpot: Dashpot,
-        /// The coefficient of restitution.
-        restitution: f64,
-    },
+pub struct ContactLoss {
+    /// The law; for a dashpot the force of the barrier must be a spring.
+    pub law: LossyLaw,
+    /// Its amount.
+    pub amount: LossAmount,
 }
 
-impl ContactLoss {
-    /// The name of the law, as in a problem file.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Damping(_) | Self::Restitution(_) => "hunt-crossley",
-            Self::Dashpot { dashpot, .. } => dashpot.name(),
-        }
-    }
-
-    /// The dashpot; `None` for the law of Hunt and Crossley.
-    pub const fn dashpot(self) -> Option<Dashpot> {
-        match self {
-            Self::Damping(_) | Self::Restitution(_) => None,
-            Self::Dashpot { dashpot, .. } => Some(dashpot),
-        }
-    }
+/// The amount of a loss, by the damping or by the restitution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LossAmount {
+    /// lambda, positive, in units of time over the unit of x, mu/gamma in equation (7); of a dashpot in units of
+    /// time.
+    Damping(f64),
+    /// The coefficient of restitution, above 0 and below 1, of the contact alone, at the speed that the energy of
+    /// the swing gives the touch.
+    Restitution(f64),
 }
 
 /// The default pendulum: released at -1.5 rad, the barrier at 0.323, the stiffness of its design by
@@ -315,7 +299,7 @@ impl Setup {
             Some(loss) => {
                 let inwards = &sign * &Expr::from(x.derivative());
                 let damped = &Expr::from(letters.damping) * &inwards;
-                match loss.dashpot() {
+                match loss.law.dashpot() {
                     None => &pressed * &(&Expr::from(1) + &damped),
                     // The force of a spring is that of d + lambda d' in place of d.
                     Some(dashpot) => {

@@ -87,7 +87,7 @@ impl Impact {
                 None => converted("peak force", &penetration, force),
                 Some(_) => ImpactQuantity {
                     name: "peak force",
-                    runge_kutta: units.force() * self.greatest_force(),
+                    runge_kutta: units.force() * self.greatest_force,
                     closed_forms: speed
                         .closed_forms
                         .iter()
@@ -104,20 +104,6 @@ impl Impact {
         let known = si.rows().into_iter().map(|(row, _)| row.runge_kutta);
         let in_range = known.chain([si.contact_stiffness]).all(f64::is_normal);
         in_range.then_some(si)
-    }
-}
-
-impl Impact {
-    /// The greatest force of the true contact, its damping included, per unit of mass.
-    fn greatest_force(&self) -> f64 {
-        let contact = &self.truth.contact;
-        let force = |t: f64| match contact.phase_point_at(t) {
-            Some((depth, speed)) => {
-                hertz::force(self.setup.stiffness * (1.0 + self.damping * speed), depth)
-            }
-            None => 0.0,
-        };
-        greatest(force, 0.0, self.truth.duration)
     }
 }
 

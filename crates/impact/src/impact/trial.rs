@@ -6,16 +6,15 @@
 //! = s (x - x_e), which runs from the equilibrium towards the barrier.
 
 use super::collision::{Collision, CollisionError};
-use super::contact::hunt_crossley::{damping_for, restitution};
+use super::contact::hunt_crossley::restitution;
 use super::contact::power_law::exponent_of;
-use super::contact::{
-    ContactError, ContactLaw, ContactRow, DampedSpring, HuntCrossley, Touch, comparison,
-};
+use super::contact::{ContactError, ContactLaw, ContactRow, LossyContact, Touch, comparison};
 use super::derived::{DerivedContact, Flight, phases_of};
 use super::error::ImpactError;
 use super::judge::{Deviation, TrueImpact, assured_impact, deviation};
+use super::lossy_laws::{LossyRow, lossy_rows};
 use super::phases::ThreePhases;
-use super::setup::{ContactLoss, ImpactEquations, Setup};
+use super::setup::{ContactLoss, ImpactEquations, LossAmount, Setup};
 use crate::method;
 use crate::method::table::{Choice, MethodEntry};
 use crate::numeric::ode::IntegrationOptions;
@@ -97,7 +96,7 @@ impl Trial<'_> {
             restoring_force: &|z: f64| sign * equations.restoring_force(origin + sign * z),
             elastic_force: &|depth: f64| equations.elastic_force(depth),
             damping: 0.0,
-            dashpot: setup.loss.and_then(ContactLoss::dashpot),
+            dashpot: setup.loss.and_then(|loss| loss.law.dashpot()),
         };
         let seen = |error: CollisionError| error.seen_from(sign, origin);
         let inside = collision.release > collision.barrier && collision.barrier.is_finite();
@@ -120,13 +119,12 @@ impl Trial<'_> {
                 setup.force.as_ref().map_or("gamma*d^(3/2)".to_owned(), |own| own.to_string());
             return Err(ImpactError::NoSpring { law: dashpot.name(), force });
         }
+        let stiffness = collision.stiffness * (collision.elastic_force)(1.0);
         let damping = match setup.loss {
             None => 0.0,
-            Some(ContactLoss::Damping(damping)) => damping,
-            Some(ContactLoss::Restitution(wanted)) => damping_for(wanted)? / energy_speed,
-            Some(ContactLoss::Dashpot { dashpot, restitution }) => {
-                let stiffness = collision.stiffness * (collision.elastic_force)(1.0);
-                2.0 * dashpot.damping_ratio_for(restitution)? / stiffness.sqrt()
+            Some(ContactLoss { amount: LossAmount::Damping(damping), .. }) => damping,
+            Some(ContactLoss { law, amount: LossAmount::Restitution(wanted) }) => {
+                law.damping_for(wanted, stiffness, energy_speed)?
             }
         };
         if collision.dashpot.is_none() {
@@ -136,14 +134,13 @@ impl Trial<'_> {
             return Err(ImpactError::NoPower { force: force.to_string() });
         }
         let collision = Collision { damping, ..collision };
-        let options = IntegrationOptions {
-            maximum_steps: setup.step_limit as usize,
-            ..IntegrationOptions::with_tolerance(setup.integrator_tolerance)
-        };
-        let truth = assured_impact(&collision, &options).map_err(|error| match error {
-            ImpactError::Collision(error) => seen(error).into(),
-            other => other,
-        })?;
+        let truth =
+            assured_impact(&collision, &integration_options(setup)).map_err(
+                |error| match error {
+                    ImpactError::Collision(error) => seen(error).into(),
+                    other => other,
+                },
+            )?;
         body(&Trial {
             setup,
             equations: &equations,
@@ -289,17 +286,12 @@ impl Trial<'_> {
             None => {
                 Ok(DerivedContact::Elastic(Box::new(touch.contact_by(self.setup.contact_law)?)))
             }
-            Some(ContactLoss::Dashpot { dashpot, restitution }) => {
-                let stiffness = touch.stiffness * (touch.elastic_force)(1.0);
-                let contact = DampedSpring::new(dashpot, stiffness, restitution, speed)?;
-                Ok(DerivedContact::Spring(Box::new(contact)))
-            }
-            Some(ContactLoss::Damping(_) | ContactLoss::Restitution(_)) => {
+            Some(ContactLoss { law, .. }) => {
                 let exponent = touch.exponent.ok_or(ContactError::NoPowerLaw)?;
                 let stiffness = touch.stiffness * (touch.elastic_force)(1.0);
-                let contact =
-                    HuntCrossley::new(exponent, stiffness, self.collision.damping, speed)?;
-                Ok(DerivedContact::Damped(Box::new(contact)))
+                let damping = self.collision.damping;
+                let contact = LossyContact::new(law, exponent, stiffness, damping, speed)?;
+                Ok(DerivedContact::Lossy(Box::new(contact)))
             }
         }
     }
@@ -320,10 +312,31 @@ impl Trial<'_> {
 
     /// Every law of the contact at the speed from the energy; empty if not requested.
     pub(super) fn contact_laws(&self) -> Result<Vec<ContactRow>, ContactError> {
-        match self.setup.every_contact_law {
+        match self.setup.every_contact_law && self.setup.loss.is_none() {
             true => comparison(&self.touch(self.energy_speed)),
             false => Ok(vec![]),
         }
+    }
+
+    /// Every law of a contact that loses energy, for the restitution of the contact without the force of the swing;
+    /// empty if not requested.
+    pub(super) fn lossy_laws(&self) -> Result<Vec<LossyRow>, ImpactError> {
+        let (true, Some(ContactLoss { amount, .. })) =
+            (self.setup.every_contact_law, self.setup.loss)
+        else {
+            return Ok(vec![]);
+        };
+        let restitution = match amount {
+            LossAmount::Restitution(restitution) => restitution,
+            LossAmount::Damping(damping) => restitution(damping * self.energy_speed)?,
+        };
+        let exponent = exponent_of(self.collision.elastic_force);
+        lossy_rows(
+            &self.collision,
+            exponent,
+            [restitution, self.energy_speed],
+            &integration_options(self.setup),
+        )
     }
 
     /// The relative errors of three phases in x: time to contact, speed, penetration, duration,
@@ -349,6 +362,14 @@ impl Trial<'_> {
     fn number_errors(&self, phases: &ThreePhases) -> [f64; 5] {
         let (found, truth) = (phases.quantities(), self.truth.quantities());
         std::array::from_fn(|index| found[index] / truth[index] - 1.0)
+    }
+}
+
+/// The options of Runge-Kutta.
+fn integration_options(setup: &Setup) -> IntegrationOptions {
+    IntegrationOptions {
+        maximum_steps: setup.step_limit as usize,
+        ..IntegrationOptions::with_tolerance(setup.integrator_tolerance)
     }
 }
 

@@ -12,7 +12,7 @@
 //! in the time lambda. Nothing else acts.
 
 use super::super::hertz::positive;
-use super::{ContactError, Dashpot, in_range, within};
+use super::{ContactError, Dashpot, in_range, not_negative, within};
 
 /// A contact with a spring and a dashpot, entered with the speed v.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,16 +47,18 @@ pub struct DampedSpring {
 }
 
 impl DampedSpring {
-    /// The contact of this stiffness gamma and coefficient of restitution, touched at this speed.
+    /// The contact of this stiffness gamma and damping lambda, touched at this speed.
     ///
     /// # Errors
-    /// [`ContactError`]: a quantity outside its domain, or numbers beyond double precision.
+    /// [`ContactError`]: a quantity outside its domain, a dashpot from which the motion does not come back, or
+    /// numbers beyond double precision.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::contact::{DampedSpring, Dashpot};
     ///
-    /// let contact = DampedSpring::new(Dashpot::Pulls, 1e4, 0.8, 2.0)?;
+    /// let damping = 2.0 * Dashpot::Pulls.damping_ratio_for(0.8)? / 100.0;
+    /// let contact = DampedSpring::new(Dashpot::Pulls, 1e4, damping, 2.0)?;
     /// let [_, velocity] = contact.phase_point(contact.duration);
     /// assert!((velocity + 1.6).abs() < 1e-12);
     /// # Ok::<(), lindstedt::impact::contact::ContactError>(())
@@ -64,14 +66,18 @@ impl DampedSpring {
     pub fn new(
         dashpot: Dashpot,
         stiffness: f64,
-        restitution: f64,
+        damping: f64,
         speed: f64,
     ) -> Result<Self, ContactError> {
         let stiffness = positive("stiffness gamma", stiffness)?;
         let speed = positive("speed of contact", speed)?;
-        let damping_ratio = dashpot.damping_ratio_for(restitution)?;
+        let damping = not_negative("damping lambda", damping)?;
         let omega = stiffness.sqrt();
-        let damping = 2.0 * damping_ratio / omega;
+        let damping_ratio = 0.5 * damping * omega;
+        let restitution = dashpot.restitution(damping_ratio)?;
+        if restitution == 0.0 {
+            return Err(ContactError::NeverLeaves { damping_ratio });
+        }
         let exit_speed = restitution * speed;
         let mut contact = Self {
             dashpot,
@@ -161,8 +167,10 @@ mod tests {
     fn a_damped_spring_is_its_damped_sine() {
         for dashpot in [Dashpot::Pulls, Dashpot::DoesNotPull] {
             for restitution in [0.999_9, 0.8, 0.5, 0.2, 0.135_335_283_236_612_7, 0.05] {
+                let ratio = dashpot.damping_ratio_for(restitution).expect("a ratio");
                 let contact =
-                    DampedSpring::new(dashpot, 400.0, restitution, 3.0).expect("a contact");
+                    DampedSpring::new(dashpot, 400.0, 0.1 * ratio, 3.0).expect("a contact");
+                assert!((contact.restitution / restitution - 1.0).abs() < 1e-12, "{contact:?}");
                 let force = |depth: f64, rate: f64| {
                     let force = 400.0 * (depth + contact.damping * rate);
                     if dashpot == Dashpot::Pulls { force } else { force.max(0.0) }
@@ -190,9 +198,14 @@ mod tests {
                 assert!((lost - contact.energy_lost).abs() < 1e-8);
             }
         }
-        for (stiffness, restitution, speed) in [(0.0, 0.5, 1.0), (1.0, 0.0, 1.0), (1.0, 0.5, -1.0)]
-        {
-            DampedSpring::new(Dashpot::Pulls, stiffness, restitution, speed).expect_err("refused");
+        for (stiffness, damping, speed) in [
+            (0.0, 0.5, 1.0),
+            (1.0, -0.1, 1.0),
+            (1.0, 0.5, -1.0),
+            (1.0, 2.0, 1.0),
+            (1.0, f64::NAN, 1.0),
+        ] {
+            DampedSpring::new(Dashpot::Pulls, stiffness, damping, speed).expect_err("refused");
         }
     }
 }

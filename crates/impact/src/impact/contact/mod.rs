@@ -19,6 +19,7 @@
 //! - `dashpot`: a spring with a dashpot, or a force with one that comes in by a step: restitution and
 //!   damping.
 //! - `damped_spring`: the motion of a spring with a dashpot, a damped sine.
+//! - `lossy`: the laws that lose energy, by name.
 //! - `line`: a line in place of the force, equation (15), which the paper's phases use as well.
 //! - `half_oscillation`: homotopy, iteration and the balance of harmonics.
 //! - [`law`]: all laws by name, beside the exact one: [`comparison`].
@@ -41,6 +42,7 @@ mod half_oscillation;
 pub mod hunt_crossley;
 pub mod law;
 pub(super) mod line;
+mod lossy;
 pub mod power_law;
 mod time;
 
@@ -51,6 +53,7 @@ pub use hunt_crossley::HuntCrossley;
 pub use law::{
     ContactErrors, ContactLaw, ContactMotion, ContactRow, Touch, UnknownContactLaw, comparison,
 };
+pub use lossy::{LossyContact, LossyLaw, LossyNumbers};
 pub use power_law::{CorrectedPowerLaw, PowerLaw};
 
 /// The reason why a contact cannot be computed.
@@ -140,6 +143,20 @@ pub enum ContactError {
         "the force of this contact is not given as a power of the depth: give its exponent, or take the exact contact"
     )]
     NoPowerLaw,
+    /// A dashpot beside a force that is no spring.
+    #[error(
+        "a dashpot has a closed form beside a spring alone, the exponent 1: take hunt-crossley"
+    )]
+    NoSpring,
+    /// A dashpot so strong that the motion creeps back and never leaves the contact.
+    #[error(
+        "the dashpot does not let the motion out again: its damping ratio lambda*sqrt(gamma)/2 is {}, and must be below 1",
+        decimal(*damping_ratio)
+    )]
+    NeverLeaves {
+        /// The damping ratio.
+        damping_ratio: f64,
+    },
     /// The perturbation or the balance has no oscillation at this speed.
     #[error(
         "no oscillation of this form begins with that speed: what acts beside the contact is too strong; take the exact contact"

@@ -15,7 +15,9 @@
 //! the polynomials of a step between two certain signs.
 //!
 //! A spring with a dashpot that pulls, `d'' = -sin(xc + d) - gamma (d + lambda d')`, is the same with
-//! `gamma (q^3 + lambda q v)` for `gamma q^(2 n + 1) (1 + lambda v)`.
+//! `gamma (q^3 + lambda q v)` for `gamma q^(2 n + 1) (1 + lambda v)`. One that does not pull lets go where
+//! `P = q^2 + lambda v` passes zero: positive on the whole of the steps before, falling throughout on that one. From
+//! there the swing alone is followed to q = 0, P falling throughout, so that the barrier is not met again.
 //!
 //! In: place, stiffness, exponent and damping of the barrier, the speed. Out: depth, duration and exit speed as
 //! balls. A contact takes some thirty steps.
@@ -44,10 +46,31 @@ pub(super) struct LossyContact {
     pub(super) terms: Vec<(Ball, u32)>,
     /// lambda.
     pub(super) damping: Ball,
-    /// Whether the loss is that of a dashpot beside a spring.
-    pub(super) has_dashpot: bool,
+    /// The law of the loss.
+    pub(super) law: LossLaw,
     /// The speed at the touch.
     pub(super) speed: Ball,
+}
+
+/// The law of a loss.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum LossLaw {
+    /// That of Hunt and Crossley.
+    HuntCrossley,
+    /// A dashpot beside a spring.
+    Dashpot {
+        /// Whether it pulls on the way out.
+        pulls: bool,
+    },
+}
+
+/// The part of a contact that is followed.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Leg {
+    /// The barrier acts.
+    Pressed,
+    /// It has let go: the swing alone acts.
+    Released,
 }
 
 /// The numbers of a contact.
@@ -87,6 +110,8 @@ struct Step {
     remainders: States<Bound>,
     /// The signs of v and of dv/ds on the whole step.
     signs: [Sign; 2],
+    /// The signs of the push P = q^2 + lambda v and of dP/ds on the whole step.
+    push: [Sign; 2],
 }
 
 impl Step {
@@ -103,13 +128,13 @@ impl Step {
         [0, 1, 2].map(|state| self.at(state, &whole))
     }
 
-    /// The part of the step at which a state passes zero from above, which it does once.
-    fn root(&self, state: usize) -> Ball {
+    /// The part of the step at which a quantity passes zero from above, which it does once.
+    fn root(&self, quantity: impl Fn(&Ball) -> Ball) -> Ball {
         const HALVINGS: usize = 200;
         let (mut low, mut bits) = (Integer::from(0), 0);
         for _ in 0..HALVINGS {
             let middle = Integer::from(2) * &low + Integer::from(1);
-            let value = self.at(state, &WORKING.dyadic(&middle, bits + 1));
+            let value = quantity(&WORKING.dyadic(&middle, bits + 1));
             low = match sign(&value) {
                 Sign::Positive => middle,
                 Sign::Negative => Integer::from(2) * &low,
@@ -130,17 +155,31 @@ impl LossyContact {
     /// Follows the contact from the touch to its end.
     ///
     /// # Errors
-    /// [`NotEnclosed::Digits`] where no step is short enough, or the contact does not end.
+    /// [`NotEnclosed::Digits`] where no step is short enough, or the contact does not end;
+    /// [`NotEnclosed::PressedAgain`] where a barrier that has let go may be met again.
     pub(super) fn follow(&self) -> Result<LossyContactEnds, NotEnclosed> {
         const MOST_STEPS: usize = 2_000;
         let mut states = [Ball::zero(), self.speed.clone(), Ball::zero()];
         let mut deepest: Option<Ball> = None;
+        let lets_go =
+            self.law == LossLaw::Dashpot { pulls: false } && sign(&self.damping) == Sign::Positive;
+        let mut leg = Leg::Pressed;
         let first = self.first_halvings().ok_or(NotEnclosed::Digits)?;
         let mut halvings = first;
         for _ in 0..MOST_STEPS {
-            let step = self.step(&states, halvings);
+            let step = self.step(&states, halvings, leg);
             let ended = step.and_then(|step| {
                 let end = step.end();
+                let is_loose = match (lets_go, leg, step.push) {
+                    (false, ..) | (true, Leg::Pressed, [Sign::Positive, _]) => false,
+                    (true, Leg::Released, [_, Sign::Negative]) => false,
+                    (true, Leg::Pressed, [_, Sign::Negative]) => match sign(&self.push(&end)) {
+                        Sign::Positive => false,
+                        Sign::Negative => true,
+                        Sign::Uncertain => return None,
+                    },
+                    _ => return None,
+                };
                 let turns = match (step.signs, &deepest) {
                     ([Sign::Positive, _], None) | ([Sign::Negative, _], Some(_)) => false,
                     ([_, Sign::Negative], None) => match sign(&end[1]) {
@@ -155,22 +194,33 @@ impl LossyContact {
                     (true, Sign::Negative) => true,
                     _ => false,
                 };
-                // A contact that turns and ends on one step is followed on shorter ones.
-                (!(turns && is_out)).then_some((step, end, turns, is_out))
+                // A contact that turns, lets go or ends on one step is followed on shorter ones.
+                let happenings = [turns, is_loose, is_out].into_iter().filter(|own| *own).count();
+                (happenings <= 1).then_some((step, end, [turns, is_loose, is_out]))
             });
-            let Some((step, end, turns, is_out)) = ended else {
+            let Some((step, end, [turns, is_loose, is_out])) = ended else {
                 // Between two signs that are not certain a step ends elsewhere.
                 halvings += 1;
                 if halvings > first + 40 {
-                    return Err(NotEnclosed::Digits);
+                    return Err(match leg {
+                        Leg::Pressed => NotEnclosed::Digits,
+                        Leg::Released => NotEnclosed::PressedAgain,
+                    });
                 }
                 continue;
             };
             if turns {
-                deepest = Some(step.at(0, &step.root(1)));
+                deepest = Some(step.at(0, &step.root(|part| step.at(1, part))));
+            }
+            if is_loose {
+                let part =
+                    step.root(|part| self.push(&[0, 1, 2].map(|state| step.at(state, part))));
+                states = [0, 1, 2].map(|state| step.at(state, &part));
+                leg = Leg::Released;
+                continue;
             }
             if let (true, Some(root_of_depth)) = (is_out, deepest.clone()) {
-                let part = step.root(0);
+                let part = step.root(|part| step.at(0, part));
                 let duration = step.at(2, &part);
                 let exit_speed = WORKING.scaled(&step.at(1, &part), -1);
                 return Ok(LossyContactEnds { root_of_depth, duration, exit_speed });
@@ -195,13 +245,18 @@ impl LossyContact {
         (halvings.is_finite() && halvings.abs() < 500.0).then_some(halvings.max(0.0) as u32)
     }
 
+    /// The push P = q^2 + lambda v, the force of a spring with a dashpot over gamma.
+    fn push(&self, [q, v, _]: &States<Ball>) -> Ball {
+        sum(&product(q, q), &product(&self.damping, v))
+    }
+
     /// The step of the length `2^-halvings`; `None` if it is too long.
-    fn step(&self, states: &States<Ball>, halvings: u32) -> Option<Step> {
+    fn step(&self, states: &States<Ball>, halvings: u32, leg: Leg) -> Option<Step> {
         const TRIALS: usize = 6;
         let length = WORKING.dyadic(&Integer::from(1), halvings as usize);
         // Coefficients of order 1 are rates times the length.
         let change = |states: &States<Ball>| -> Option<States<Ball>> {
-            let [q, v, t] = self.series(states, &length, 1)?;
+            let [q, v, t] = self.series(states, &length, 1, leg)?;
             Some([q, v, t].map(|series| series[1].clone()))
         };
         let mut reach = change(states)?.map(|own| {
@@ -229,13 +284,22 @@ impl LossyContact {
             }
         }
         let (whole, changes) = found?;
-        let last = self.series(&whole, &length, ORDER + 1)?;
+        let last = self.series(&whole, &length, ORDER + 1, leg)?;
         let remainders = [0, 1, 2].map(|state| WORKING.magnitude(&last[state][ORDER + 1]));
         if remainders.iter().any(|own| *own > Bound::power_of_two(NEGLIGIBLE)) {
             return None;
         }
-        let series = self.series(states, &length, ORDER)?;
-        Some(Step { series, remainders, signs: [sign(&whole[1]), sign(&changes[1])] })
+        let series = self.series(states, &length, ORDER, leg)?;
+        let push_rate = sum(
+            &WORKING.scaled(&product(&whole[0], &changes[0]), 2),
+            &product(&self.damping, &changes[1]),
+        );
+        Some(Step {
+            series,
+            remainders,
+            signs: [sign(&whole[1]), sign(&changes[1])],
+            push: [sign(&self.push(&whole)), sign(&push_rate)],
+        })
     }
 
     /// The coefficients of the states up to an order, in the part u of a step of this length.
@@ -244,6 +308,7 @@ impl LossyContact {
         [q, v, t]: &States<Ball>,
         length: &Ball,
         order: usize,
+        leg: Leg,
     ) -> Option<States<Vec<Ball>>> {
         let products: Vec<Vec<[usize; 2]>> =
             self.terms.iter().map(|(_, power)| factors_of_power(power - 1)).collect();
@@ -284,12 +349,20 @@ impl LossyContact {
             };
             let each = terms.map(force_of).collect::<Option<Vec<Ball>>>()?;
             elastic.push(each.iter().fold(Ball::zero(), |total, term| sum(&total, term)));
-            let lost = match self.has_dashpot {
-                true => product(&self.terms.first()?.0, &coefficient(&q, &v, k)),
-                false => coefficient(&elastic, &v, k),
+            let swing = coefficient(&q, &sine, k);
+            let force = match leg {
+                Leg::Released => swing,
+                Leg::Pressed => {
+                    let lost = match self.law {
+                        LossLaw::Dashpot { .. } => {
+                            product(&self.terms.first()?.0, &coefficient(&q, &v, k))
+                        }
+                        LossLaw::HuntCrossley => coefficient(&elastic, &v, k),
+                    };
+                    let barrier = sum(&elastic[k], &product(&self.damping, &lost));
+                    sum(&swing, &barrier)
+                }
             };
-            let barrier = sum(&elastic[k], &product(&self.damping, &lost));
-            let force = sum(&coefficient(&q, &sine, k), &barrier);
             let divisor = u32::try_from(k + 1).ok()?;
             let of_rate = |rate: &Ball| WORKING.divided(&product(length, rate), divisor);
             let next = [

@@ -23,7 +23,7 @@ mod lossy_contact;
 use num_traits::{Signed as _, ToPrimitive as _, Zero as _};
 
 use self::contact::{PowerLawContact, is_positive, position_and_waves, sine_and_cosine};
-use self::lossy_contact::LossyContact;
+use self::lossy_contact::{LossLaw, LossyContact};
 use super::Enclosure;
 use super::fourier_series::WORKING;
 use crate::exact::Rational;
@@ -167,6 +167,11 @@ pub enum NotEnclosed {
         "the contact goes on beyond the horizontal, x = pi/2: its deepest point is not proved to be the only one"
     )]
     Deep,
+    /// The swing presses the motion against a barrier that has let go of it.
+    #[error(
+        "the swing may press the motion against the barrier again after that has let go: the end of the contact is not proved"
+    )]
+    PressedAgain,
     /// The digits do not suffice.
     #[error("the digits do not suffice: gamma is too small or too large for a proof")]
     Digits,
@@ -199,7 +204,7 @@ pub fn enclose_impact(
     let approach = Approach::new(amplitude, barrier, force)?;
     let [(stiffness, power)] = approach.terms.as_slice() else {
         let none = Rational::from_integer(0.into());
-        let integrated = enclose_lossy(amplitude, barrier, force, (&none, false))?;
+        let integrated = enclose_lossy(amplitude, barrier, force, (&none, LossLaw::HuntCrossley))?;
         return Ok(ImpactEnclosure { loss: None, ..integrated });
     };
     let (stiffness, power) = (stiffness.clone(), *power);
@@ -242,12 +247,13 @@ pub fn enclose_lossy_impact(
     force: &[PowerLaw],
     damping: &Rational,
 ) -> Result<ImpactEnclosure, NotEnclosed> {
-    enclose_lossy(amplitude, barrier, force, (damping, false))
+    enclose_lossy(amplitude, barrier, force, (damping, LossLaw::HuntCrossley))
 }
 
 /// Encloses the impact of a pendulum that is released from rest at `-amplitude` towards a barrier at `barrier`, on
 /// its right, a spring with a dashpot: its force is `stiffness (d + damping d')`, which pulls before the depth is zero
-/// again, where the contact ends. The period ends where the motion turns after the impact.
+/// again, where the contact ends; or one that does not pull, and lets go before. The period ends where the motion turns
+/// after the impact.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -256,8 +262,10 @@ pub fn enclose_lossy_impact(
 ///
 /// let fraction = |above: i64, below: i64| Rational::new(above.into(), below.into());
 /// let (amplitude, barrier) = (fraction(3, 2), fraction(323, 1000));
-/// let impact = enclose_dashpot_impact(&amplitude, &barrier, &fraction(1_000_000, 1), &fraction(1, 10_000))?;
-/// assert!(impact.loss.is_some_and(|loss| loss.restitution.radius.value() < 1e-30));
+/// for pulls in [true, false] {
+///     let impact = enclose_dashpot_impact(&amplitude, &barrier, &fraction(1_000_000, 1), &fraction(1, 10_000), pulls)?;
+///     assert!(impact.loss.is_some_and(|loss| loss.restitution.radius.value() < 1e-30));
+/// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
@@ -268,10 +276,11 @@ pub fn enclose_dashpot_impact(
     barrier: &Rational,
     stiffness: &Rational,
     damping: &Rational,
+    pulls: bool,
 ) -> Result<ImpactEnclosure, NotEnclosed> {
     let spring =
         PowerLaw { stiffness: stiffness.clone(), exponent: Rational::from_integer(1.into()) };
-    enclose_lossy(amplitude, barrier, &[spring], (damping, true))
+    enclose_lossy(amplitude, barrier, &[spring], (damping, LossLaw::Dashpot { pulls }))
 }
 
 /// Encloses an impact with a loss by Hunt and Crossley, which may be zero, or by a dashpot.
@@ -279,7 +288,7 @@ fn enclose_lossy(
     amplitude: &Rational,
     barrier: &Rational,
     force: &[PowerLaw],
-    (damping, has_dashpot): (&Rational, bool),
+    (damping, law): (&Rational, LossLaw),
 ) -> Result<ImpactEnclosure, NotEnclosed> {
     if damping.is_negative() {
         return Err(NotEnclosed::Damping);
@@ -290,7 +299,7 @@ fn enclose_lossy(
         barrier: place,
         terms,
         damping: WORKING.fraction(damping),
-        has_dashpot,
+        law,
         speed: speed.clone(),
     };
     let ends = contact.follow()?;

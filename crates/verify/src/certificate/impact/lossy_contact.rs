@@ -110,7 +110,7 @@ struct Step {
     remainders: States<Bound>,
     /// The signs of v and of dv/ds on the whole step.
     signs: [Sign; 2],
-    /// The signs of the push P = q^2 + lambda v and of dP/ds on the whole step.
+    /// The signs of the push P = q^2 + lambda v and of dP/dt on the whole step.
     push: [Sign; 2],
 }
 
@@ -250,6 +250,16 @@ impl LossyContact {
         sum(&product(q, q), &product(&self.damping, v))
     }
 
+    /// dP/dt = v + lambda dv/dt.
+    fn push_rate(&self, [q, v, _]: &States<Ball>, push: &Ball, leg: Leg) -> Option<Ball> {
+        let [swing, _] = sine_and_cosine(&sum(&self.barrier, &product(q, q)))?;
+        let force = match leg {
+            Leg::Released => swing,
+            Leg::Pressed => sum(&swing, &product(&self.terms.first()?.0, push)),
+        };
+        Some(sum(v, &WORKING.scaled(&product(&self.damping, &force), -1)))
+    }
+
     /// The step of the length `2^-halvings`; `None` if it is too long.
     fn step(&self, states: &States<Ball>, halvings: u32, leg: Leg) -> Option<Step> {
         const TRIALS: usize = 6;
@@ -290,15 +300,13 @@ impl LossyContact {
             return None;
         }
         let series = self.series(states, &length, ORDER, leg)?;
-        let push_rate = sum(
-            &WORKING.scaled(&product(&whole[0], &changes[0]), 2),
-            &product(&self.damping, &changes[1]),
-        );
+        let push = self.push(&whole);
+        let push_rate = self.push_rate(&whole, &push, leg)?;
         Some(Step {
             series,
             remainders,
             signs: [sign(&whole[1]), sign(&changes[1])],
-            push: [sign(&self.push(&whole)), sign(&push_rate)],
+            push: [sign(&push), sign(&push_rate)],
         })
     }
 

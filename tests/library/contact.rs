@@ -692,7 +692,7 @@ fn a_dashpot_has_the_restitution_asked_for_at_any_speed() {
 fn every_law_that_loses_energy_has_the_restitution_asked_for() {
     use lindstedt::impact::contact::PowerLaw;
     for (force, exponent) in [("gamma*d^(3/2)", 1.5), ("gamma*d^2", 2.0), ("gamma*d", 1.0)] {
-        for wanted in [0.3, 0.7, 0.95] {
+        for wanted in [0.03, 0.3, 0.7, 0.95] {
             let setup = Setup {
                 force: Some(force.parse().expect("a force")),
                 stiffness: 1e9,
@@ -713,12 +713,22 @@ fn every_law_that_loses_energy_has_the_restitution_asked_for() {
             for row in &found.lossy_laws {
                 let [_, _, _, restitution] = row.closed_form;
                 assert!((restitution / wanted - 1.0).abs() < 1e-11, "{force}: {row:?}");
-                let allowed = if exponent == 2.0 { 2e-2 } else { 5e-3 };
+                // A body that comes out slowly is pushed by the swing for long.
+                let allowed = match (exponent == 2.0, wanted < 0.1) {
+                    (_, true) => 0.1,
+                    (true, false) => 2e-2,
+                    (false, false) => 5e-3,
+                };
                 assert!(row.errors().iter().all(|error| error.abs() < allowed), "{force}: {row:?}");
                 let spring = found.energy_speed / row.stiffness.sqrt();
                 match row.law {
                     LossyLaw::HuntCrossley => assert_eq!(row.stiffness, 1e9),
                     LossyLaw::Dashpot(_) => {
+                        // From zeta = 1/2 on the force is greatest at the touch, gamma lambda v.
+                        let at_touch = row.stiffness * row.damping * found.energy_speed;
+                        let is_at_touch = row.damping * row.stiffness.sqrt() >= 1.0;
+                        let off = row.runge_kutta[2] / at_touch - 1.0;
+                        assert!(!is_at_touch || off.abs() < 1e-9, "{force}: {row:?}");
                         assert!((spring / lossless.depth - 1.0).abs() < 1e-9, "{force}: {row:?}");
                     }
                 }

@@ -153,7 +153,8 @@ impl SiImpact {
     }
 }
 
-/// The greatest value of a function that rises and then falls, by golden sections.
+/// The greatest value of a function that rises and then falls, by golden sections; after the fall it may be constant, as
+/// the force of a barrier that has let go.
 pub(super) fn greatest(function: impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> f64 {
     let part = 0.5 * (5.0_f64.sqrt() - 1.0);
     let mut best = 0.0_f64;
@@ -162,7 +163,7 @@ pub(super) fn greatest(function: impl Fn(f64) -> f64, mut from: f64, mut to: f64
         let (left, right) = (to - part * (to - from), from + part * (to - from));
         let (at_left, at_right) = (function(left), function(right));
         best = best.max(at_left).max(at_right);
-        match at_left > at_right {
+        match at_left >= at_right {
             true => to = right,
             false => from = left,
         }

@@ -12,6 +12,8 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use num_traits::{Signed, Zero};
+
 use super::{Problem, ProblemError, WallSection, refused};
 use crate::contact::{CompliantContact, ContactLoss, Masses};
 use crate::coupled::CoupledEquations;
@@ -91,6 +93,7 @@ impl<'a> ContactText<'a> {
             };
             let value = parse_expression(&expression_in_grammar(value))
                 .map_err(|error| at(text, &place, &error.message))?;
+            check_sign(key, &value).map_err(|what| at(text, &place, &what))?;
             if quantities.insert(*key, value).is_some() {
                 return Err(at(text, &place, &format!("`{name}` is given twice")));
             }
@@ -247,6 +250,21 @@ impl<'a> ContactText<'a> {
             ))
             .with_help("give c in place of the restitution".to_owned())),
         }
+    }
+}
+
+/// Refuses a quantity that is a number of the wrong sign: a contact that pulls, or one that gains energy.
+fn check_sign(name: &str, value: &Expr) -> Result<(), String> {
+    let Some(number) = value.as_number() else { return Ok(()) };
+    let is_damping = name == "c" || name == "lambda";
+    match name {
+        // Its range has a sentence of its own.
+        "restitution" => Ok(()),
+        _ if number.is_positive() || is_damping && number.is_zero() => Ok(()),
+        _ if is_damping => {
+            Err(format!("`{name}` must not be negative: the contact would gain energy"))
+        }
+        _ => Err(format!("`{name}` must be positive")),
     }
 }
 
@@ -447,6 +465,11 @@ mod tests {
             ("x'' + x = 0", "hertz", "no stiffness"),
             ("x'' + x = 0", "hertz K", "a quantity and its value"),
             ("x'' + x = 0", "hertz K=1 K=2", "given twice"),
+            ("x'' + x = 0", "hertz K=-5", "`K` must be positive"),
+            ("x'' + x = 0", "hertz K=0", "`K` must be positive"),
+            ("x'' + x = 0", "hunt-crossley K=1 n=-1 lambda=0", "`n` must be positive"),
+            ("x'' + x = 0", "hunt-crossley K=1 lambda=-1", "the contact would gain energy"),
+            ("x'' + x = 0", "step K=1 d=0 c=1", "`d` must be positive"),
             ("x'' + x = 0", "hertz K=1 restitution=0.5", "take hunt-crossley"),
             ("x'' + x = 0", "hunt-crossley K=1", "no damping"),
             ("x'' + x = 0", "hunt-crossley K=1 restitution=0.5", "speed=1"),

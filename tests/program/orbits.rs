@@ -50,6 +50,23 @@ fn orbits_as_text() {
     });
 }
 
+/// A wall beyond the place of rest leaves no motion without impacts that could graze it.
+#[test]
+fn a_wall_beyond_rest_is_not_grazed() {
+    for (bound, grazes) in
+        [("x < 1/2", true), ("x < -1/2", false), ("x > 0", false), ("x > -1/2", true)]
+    {
+        let wall = ["--wall", bound, "--restitution", "4/5"];
+        let text = printed(&[&["x'' + x'/10 + x = F*cos(w*t)"], &wall[..]].concat());
+        assert_eq!(
+            text.contains("grazing of the motion without impacts:  X = 1/2"),
+            grazes,
+            "{text}"
+        );
+        assert_eq!(text.contains("grazing of"), grazes, "{text}");
+    }
+}
+
 #[test]
 fn orbits_have_every_format() {
     let file = "examples/orbits/driven-beam.toml";

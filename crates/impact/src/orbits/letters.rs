@@ -3,6 +3,8 @@
 
 use std::collections::BTreeMap;
 
+use num_traits::Signed;
+
 use super::equation::{BiasedHarmonic, ImpactEquation};
 use super::error::OrbitError;
 use super::orbit::OrbitKind;
@@ -301,7 +303,11 @@ fn restored(formulas: &mut Formulas, free: FreeMotion, kind: OrbitKind) -> Resul
     )?;
     formulas.relate(["determinant", "determinant"], ["det", "e^2*E^2"])?;
     formulas.multipliers()?;
-    formulas.curve(["grazing", "grazing of the motion without impacts"], ["X", "Q"])?;
+    // A wall at or beyond the place of rest leaves no motion without impacts.
+    let gap_at_rest = formulas.formula("Q")?;
+    if gap_at_rest.as_number().is_none_or(Signed::is_positive) {
+        formulas.curve(["grazing", "grazing of the motion without impacts"], ["X", "Q"])?;
+    }
     formulas.curve(
         ["fold", "fold, where both speeds are one"],
         ["X^2", "(b*Q/omega)^2/(a^2 + b^2/omega^2)"],

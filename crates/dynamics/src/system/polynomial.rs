@@ -72,17 +72,37 @@ pub(super) fn sign_and_roots(
     to: f64,
     found: &mut dyn FnMut(f64, bool),
 ) -> f64 {
-    let terms = TermSizes::new(series, to.abs().max(from.abs()));
-    match series.first() {
-        None => 0.0,
-        // Most series have no root, since the constant outweighs all other terms.
-        Some(constant) if terms.constant > terms.others => constant.signum(),
-        // Of the others most grow or fall throughout, since the linear term outweighs the later ones, and
-        // have no more than one.
-        _ => {
-            let most = (2.0 * terms.linear > terms.slopes(series)).then_some(1);
-            roots_of_at_most(most, series, from, to, found);
-            sign_at_start(series, from, to)
+    Arch::new().dispatch(SignAndRoots { series, from, to, found })
+}
+
+/// The search for roots; it is inlined into its caller, so that sums side by side get the widest registers
+/// of the processor.
+struct SignAndRoots<'a> {
+    series: &'a [f64],
+    from: f64,
+    to: f64,
+    found: &'a mut dyn FnMut(f64, bool),
+}
+
+impl WithSimd for SignAndRoots<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> f64 {
+        let Self { series, from, to, found } = self;
+        let terms = TermSizes::new(series, to.abs().max(from.abs()));
+        match series.first() {
+            None => 0.0,
+            // Most series have no root, since the constant outweighs all other terms.
+            Some(constant) if terms.constant > terms.others => constant.signum(),
+            // Of the others most grow or fall throughout, since the linear term outweighs the later ones, and
+            // have no more than one.
+            _ => {
+                let most = (2.0 * terms.linear > terms.slopes(series)).then_some(1);
+                let at_start = value_in_fours(series, from + apart(from, to));
+                roots_of_at_most(most, series, [from, to], at_start, found);
+                sign_at_start(series, at_start)
+            }
         }
     }
 }
@@ -100,94 +120,138 @@ struct TermSizes {
 }
 
 impl TermSizes {
+    #[inline(always)]
     fn new(series: &[f64], s: f64) -> Self {
-        let [first, second, ..] = *series else {
-            let constant = series.first().map_or(0.0, |constant| constant.abs());
-            return Self { constant, linear: 0.0, others: 0.0, s };
+        let [first, ref behind @ ..] = *series else {
+            return Self { constant: 0.0, linear: 0.0, others: 0.0, s };
         };
-        let size = |k: usize| series.get(k + 1).map_or(0.0, |coefficient| coefficient.abs());
         Self {
             constant: first.abs(),
-            linear: second.abs() * s,
-            others: s * in_fours(series.len() - 1, s, size),
+            linear: behind.first().map_or(0.0, |second| second.abs() * s),
+            others: s * in_fours(behind, s, |_, coefficient| coefficient.abs()),
             s,
         }
     }
 
     /// The sum of `k |c_k| s^k`.
+    #[inline(always)]
     fn slopes(&self, series: &[f64]) -> f64 {
-        let size = |k: usize| {
-            series.get(k + 1).map_or(0.0, |coefficient| (k + 1) as f64 * coefficient.abs())
-        };
-        self.s * in_fours(series.len().saturating_sub(1), self.s, size)
+        let behind = series.get(1..).unwrap_or(&[]);
+        self.s * in_fours(behind, self.s, |k, coefficient| (k + 1.0) * coefficient.abs())
     }
 }
 
-/// `sum_k c_k s^k` of this many terms as four sums side by side, every fourth term in each, so that few
-/// additions wait for others.
+/// `sum_k f(k, c_k) s^k` as four sums side by side, every fourth term in each, so that few additions wait for
+/// others; f is 0 for a coefficient of 0.
 #[inline(always)]
-fn in_fours(count: usize, s: f64, coefficient: impl Fn(usize) -> f64) -> f64 {
+fn in_fours(series: &[f64], s: f64, term: impl Fn(f64, f64) -> f64) -> f64 {
     let square = s * s;
     let fourth = square * square;
+    let fours = series.chunks_exact(4);
+    let rest = fours.remainder();
+    let mut orders = four_orders(series.len() - rest.len());
     let mut sums = [0.0; 4];
-    for four in (0..count.div_ceil(4)).rev() {
-        for (place, sum) in sums.iter_mut().enumerate() {
-            *sum = *sum * fourth + coefficient(4 * four + place);
+    if !rest.is_empty() {
+        let mut last = [0.0; 4];
+        last[..rest.len()].copy_from_slice(rest);
+        for place in 0..4 {
+            sums[place] = sums[place] * fourth + term(orders[place], last[place]);
+        }
+    }
+    for four in fours.rev() {
+        for place in 0..4 {
+            orders[place] -= 4.0;
+            sums[place] = sums[place] * fourth + term(orders[place], four[place]);
         }
     }
     (sums[0] + s * sums[1]) + square * (sums[2] + s * sums[3])
 }
 
+/// Four orders from this one on.
+#[inline(always)]
+fn four_orders(first: usize) -> [f64; 4] {
+    [0.0, 1.0, 2.0, 3.0].map(|place| first as f64 + place)
+}
+
 /// Extends a range by the values of a polynomial between two places from 0 on: at both of them, and where its slope
 /// passes through zero in between.
-pub(super) fn extend_range(range: &mut [f64; 2], series: &[f64], [from, to]: [f64; 2]) {
-    /// Number of coefficients of a slope that need no memory of their own.
-    const SHORT: usize = 32;
-    /// Units in the last place by which a value may exceed the sum of its terms.
-    const DIGITS: f64 = 8.0;
-    let [constant, linear, ..] = *series else {
-        let value = series.first().copied().unwrap_or(f64::NAN);
-        *range = [range[0].min(value), range[1].max(value)];
-        return;
-    };
-    // The values lie no farther from the straight line through the first two terms than all others reach.
-    let terms = TermSizes::new(series, to);
-    let end = constant + linear * to;
-    let reach =
-        terms.others - terms.linear + DIGITS * f64::EPSILON * (terms.constant + terms.others);
-    // Most series are too far inside of the range to leave it.
-    if constant.min(end) - reach >= range[0] && constant.max(end) + reach <= range[1] {
-        return;
-    }
-    let mut extend = |value: f64| *range = [range[0].min(value), range[1].max(value)];
-    extend(if from != 0.0 { value(series, from) } else { constant });
-    // A polynomial whose linear term outweighs all later ones grows or falls throughout.
-    let mut turn = None;
-    if 2.0 * terms.linear <= terms.slopes(series) {
-        let (mut short, mut long) = ([0.0; SHORT], vec![]);
-        let slope = match short.get_mut(..series.len() - 1) {
-            Some(short) => short,
-            None => {
-                long.resize(series.len() - 1, 0.0);
-                long.as_mut_slice()
-            }
+pub(super) fn extend_range(range: &mut [f64; 2], series: &[f64], places: [f64; 2]) {
+    Arch::new().dispatch(RangeExtension { range, series, places });
+}
+
+/// The extension of a range; it is inlined into its caller, as [`SignAndRoots`].
+struct RangeExtension<'a> {
+    range: &'a mut [f64; 2],
+    series: &'a [f64],
+    places: [f64; 2],
+}
+
+impl WithSimd for RangeExtension<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        /// Number of coefficients of a slope that need no memory of their own.
+        const SHORT: usize = 32;
+        /// Units in the last place by which a value may exceed the sum of its terms.
+        const DIGITS: f64 = 8.0;
+        let Self { range, series, places: [from, to] } = self;
+        let [constant, linear, ..] = *series else {
+            let value = series.first().copied().unwrap_or(f64::NAN);
+            *range = [range[0].min(value), range[1].max(value)];
+            return;
         };
-        for (k, (coefficient, of_slope)) in series[1..].iter().zip(slope.iter_mut()).enumerate() {
-            *of_slope = (k + 1) as f64 * coefficient;
+        // The values lie no farther from the straight line through the first two terms than all others reach.
+        let terms = TermSizes::new(series, to);
+        let end = constant + linear * to;
+        let reach =
+            terms.others - terms.linear + DIGITS * f64::EPSILON * (terms.constant + terms.others);
+        // Most series are too far inside of the range to leave it.
+        if constant.min(end) - reach >= range[0] && constant.max(end) + reach <= range[1] {
+            return;
         }
-        roots_of_at_most(None, slope, from, to, &mut |place, _| {
-            if let Some(other) = turn.replace(place) {
-                extend(value(series, other));
-            }
-        });
+        let mut extend = |value: f64| *range = [range[0].min(value), range[1].max(value)];
+        extend(if from != 0.0 { value(series, from) } else { constant });
+        // A polynomial whose linear term outweighs all later ones grows or falls throughout.
+        let mut turn = None;
+        if 2.0 * terms.linear <= terms.slopes(series) {
+            let (mut short, mut long) = ([0.0; SHORT], vec![]);
+            let slope = match short.get_mut(..series.len() - 1) {
+                Some(short) => short,
+                None => {
+                    long.resize(series.len() - 1, 0.0);
+                    long.as_mut_slice()
+                }
+            };
+            write_slope(series, slope);
+            let at_start = value_in_fours(slope, from + apart(from, to));
+            roots_of_at_most(None, slope, [from, to], at_start, &mut |place, _| {
+                if let Some(other) = turn.replace(place) {
+                    extend(value(series, other));
+                }
+            });
+        }
+        match turn {
+            Some(turn) => value_at_both(series, [to, turn]).into_iter().for_each(extend),
+            None => extend(value(series, to)),
+        }
     }
-    match turn {
-        Some(turn) => value_at_both(series, [to, turn]).into_iter().for_each(extend),
-        None => extend(value(series, to)),
+}
+
+/// Writes the coefficients `(k + 1) c_(k+1)` of the slope.
+#[inline(always)]
+fn write_slope(series: &[f64], slope: &mut [f64]) {
+    let mut orders = four_orders(1);
+    for (own, from) in slope.chunks_mut(4).zip(series[1..].chunks(4)) {
+        for ((of_slope, coefficient), order) in own.iter_mut().zip(from).zip(&orders) {
+            *of_slope = order * coefficient;
+        }
+        orders = orders.map(|order| order + 4.0);
     }
 }
 
 /// The values at two places, equal to those of [`value`]; neither sum waits for the other.
+#[inline(always)]
 fn value_at_both(series: &[f64], places: [f64; 2]) -> [f64; 2] {
     let mut sums = [0.0; 2];
     for coefficient in series.iter().rev() {
@@ -198,12 +262,14 @@ fn value_at_both(series: &[f64], places: [f64; 2]) -> [f64; 2] {
     sums
 }
 
-/// Hands over the roots of a polynomial, of which there are at most so many if that is known.
+/// Hands over the roots of a polynomial, of which there are at most so many if that is known; `at_start` is its
+/// value [`apart`] from the start of the interval.
+#[inline(always)]
 fn roots_of_at_most(
     mut most: Option<usize>,
     series: &[f64],
-    from: f64,
-    to: f64,
+    [from, to]: [f64; 2],
+    at_start: f64,
     found: &mut dyn FnMut(f64, bool),
 ) {
     const MOST_INTERVALS: usize = 4000;
@@ -219,16 +285,10 @@ fn roots_of_at_most(
             let middle = 0.5 * (low + high);
             open.extend([(middle, high), (low, middle)]);
         } else if changes.count > 0 {
-            // Beside a zero at either end of an interval the sign is that a little further on.
-            let beside = |place: f64| {
-                let value = if place == from { 0.0 } else { value_in_fours(series, place) };
-                if value == 0.0 && place < to {
-                    let place = place + apart(from, to);
-                    return (place, value_in_fours(series, place));
-                }
-                (place, value)
-            };
-            let ((low, at_low), (end, at_end)) = (beside(low), beside(high));
+            let ((low, at_low), (end, at_end)) = (
+                beside(series, low, [from, to], at_start),
+                beside(series, high, [from, to], at_start),
+            );
             let crosses = match at_end == 0.0 {
                 true => at_low != 0.0 && high == to,
                 false => at_low != 0.0 && at_low.signum() != at_end.signum(),
@@ -251,8 +311,24 @@ fn roots_of_at_most(
     }
 }
 
+/// Returns an end of an interval and the value there; beside a zero the sign is that a little further on.
+#[inline(always)]
+fn beside(series: &[f64], place: f64, [from, to]: [f64; 2], at_start: f64) -> (f64, f64) {
+    let value = match place == from {
+        true if place < to => return (place + apart(from, to), at_start),
+        true => 0.0,
+        false => value_in_fours(series, place),
+    };
+    if value == 0.0 && place < to {
+        let place = place + apart(from, to);
+        return (place, value_in_fours(series, place));
+    }
+    (place, value)
+}
+
 /// Returns the root between two places, at the first of which the polynomial is positive or not, by Newton's
 /// method from a guess; where that leaves the interval or does not end, by bracketing.
+#[inline(always)]
 fn root_between(
     series: &[f64],
     [low, high]: [f64; 2],
@@ -279,31 +355,39 @@ fn root_between(
         }
         place -= step;
     }
+    bracketed_root(series, [low, high])
+}
+
+/// Returns the root between two places with values of opposite signs by bracketing.
+#[inline(never)]
+fn bracketed_root(series: &[f64], [low, high]: [f64; 2]) -> Option<f64> {
     find_root(|s| value_in_fours(series, s), low, high).ok()
 }
 
 /// The value at `s`, as four sums side by side.
+#[inline(always)]
 fn value_in_fours(series: &[f64], s: f64) -> f64 {
-    in_fours(series.len(), s, |k| series.get(k).copied().unwrap_or(0.0))
+    in_fours(series, s, |_, coefficient| coefficient)
 }
 
 /// The value and the slope at `s`, each as four sums side by side.
+#[inline(always)]
 fn value_and_slope_in_fours(series: &[f64], s: f64) -> [f64; 2] {
     let square = s * s;
     let fourth = square * square;
     let (mut sums, mut slopes) = ([0.0; 4], [0.0; 4]);
     let fours = series.chunks_exact(4);
     let rest = fours.remainder();
-    let mut order = series.len() - rest.len();
+    let mut orders = four_orders(series.len() - rest.len());
     for (place, coefficient) in rest.iter().enumerate() {
         sums[place] = *coefficient;
-        slopes[place] = (order + place) as f64 * coefficient;
+        slopes[place] = orders[place] * coefficient;
     }
     for four in fours.rev() {
-        order -= 4;
         for place in 0..4 {
+            orders[place] -= 4.0;
             sums[place] = sums[place] * fourth + four[place];
-            slopes[place] = slopes[place] * fourth + (order + place) as f64 * four[place];
+            slopes[place] = slopes[place] * fourth + orders[place] * four[place];
         }
     }
     let [value, slope] =
@@ -340,6 +424,7 @@ fn bernstein_weights(degree: usize) -> BernsteinWeights {
 
 /// Returns the sign changes of the Bernstein coefficients on an interval: with
 /// `s = low + (high - low) u` and `p = sum_k c_k u^k` these are `b_i = sum_k C(i, k) c_k/C(n, k)`.
+#[inline(always)]
 fn sign_changes(series: &[f64], low: f64, high: f64) -> SignChanges {
     /// Number of degrees whose weights are kept: more than those of the series to rounding accuracy.
     const KEPT: usize = 32;
@@ -380,49 +465,56 @@ fn sign_changes(series: &[f64], low: f64, high: f64) -> SignChanges {
             many.as_mut_slice()
         }
     };
-    Arch::new().dispatch(BernsteinCoefficients { weights, scaled, coefficients });
-    count_sign_changes(&coefficients.as_flattened()[..series.len()])
-}
-
-/// The sums of the Bernstein coefficients; it is inlined into its caller.
-struct BernsteinCoefficients<'a> {
-    weights: &'a BernsteinWeights,
-    /// `c_k`.
-    scaled: &'a [f64],
-    coefficients: &'a mut [[f64; SIDE_BY_SIDE]],
-}
-
-impl WithSimd for BernsteinCoefficients<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Self { weights, scaled, coefficients } = self;
-        for (weights, sums) in weights.iter().zip(coefficients) {
-            let mut own = [0.0; SIDE_BY_SIDE];
-            for (weights, coefficient) in weights.iter().zip(scaled) {
-                for (sum, weight) in own.iter_mut().zip(weights) {
-                    *sum += weight * coefficient;
-                }
+    for (weights, sums) in weights.iter().zip(coefficients.iter_mut()) {
+        let mut own = [0.0; SIDE_BY_SIDE];
+        for (weights, coefficient) in weights.iter().zip(scaled.iter()) {
+            for (sum, weight) in own.iter_mut().zip(weights) {
+                *sum += weight * coefficient;
             }
-            *sums = own;
         }
+        *sums = own;
     }
+    count_sign_changes(&coefficients.as_flattened()[..series.len()])
 }
 
 /// Counts the sign changes of Bernstein coefficients, the last of which is the value at the end, where a root
 /// counts.
+#[inline(always)]
 fn count_sign_changes(coefficients: &[f64]) -> SignChanges {
+    let none = SignChanges { count: 0, place: None };
+    let Some(degree) = coefficients.len().checked_sub(1) else { return none };
+    let Some(first) = coefficients.iter().position(|value| *value != 0.0) else {
+        return SignChanges { count: 1, ..none };
+    };
+    let others = &coefficients[first..];
+    if others.iter().fold(false, |any, value| any | (*value == 0.0) | value.is_nan()) {
+        return count_sign_changes_with_zeros(coefficients);
+    }
+    // Without a zero among them the signs are bits.
+    const SIGN: u32 = 63;
+    let differ = |one: f64, other: f64| (one.to_bits() ^ other.to_bits()) >> SIGN;
+    let pairs = others.iter().zip(&others[1..]);
+    let count = pairs.fold(0, |count, (one, other)| count + differ(*one, *other));
+    // Most polynomials have no root: all signs are one.
+    if count == 0 {
+        return none;
+    }
+    let changed = others.iter().position(|other| differ(others[0], *other) != 0);
+    let place = changed.and_then(|index| {
+        let (before, here) = (others.get(index.checked_sub(1)?)?, others.get(index)?);
+        let between = before / (before - here);
+        Some(((first + index - 1) as f64 + between) / degree as f64)
+    });
+    SignChanges { count: count as usize, place }
+}
+
+/// Counts the sign changes as [`count_sign_changes`]; zeros have no sign.
+#[inline(never)]
+fn count_sign_changes_with_zeros(coefficients: &[f64]) -> SignChanges {
     let mut changes = SignChanges { count: 0, place: None };
     let Some((last, degree)) = coefficients.last().zip(coefficients.len().checked_sub(1)) else {
         return changes;
     };
-    // Most polynomials have no root: all signs are one.
-    let first = coefficients[0];
-    let alike = coefficients.iter().fold(true, |alike, other| alike & (first * other > 0.0));
-    if alike {
-        return changes;
-    }
     // The last coefficient that is not zero, and its index.
     let (mut before, mut at) = (0.0, 0);
     for (index, here) in coefficients.iter().enumerate() {
@@ -442,20 +534,20 @@ fn count_sign_changes(coefficients: &[f64]) -> SignChanges {
 }
 
 /// Distance from the last root within which the sign is due to rounding.
+#[inline(always)]
 fn apart(from: f64, to: f64) -> f64 {
     1e-14 * (to.abs() + from.abs())
 }
 
-/// Returns the sign with which the search for roots begins on an interval; 0 if all coefficients are
-/// zero.
-fn sign_at_start(series: &[f64], from: f64, to: f64) -> f64 {
-    let here = value_in_fours(series, from + apart(from, to));
-    let leading = series.iter().find(|value| **value != 0.0);
-    match (here, leading) {
-        (0.0, None) => 0.0,
+/// Returns the sign with which the search for roots begins on an interval, where the polynomial has this value; 0 if
+/// all coefficients are zero.
+#[inline(always)]
+fn sign_at_start(series: &[f64], at_start: f64) -> f64 {
+    let leading = || series.iter().find(|value| **value != 0.0);
+    match at_start {
         // The value underflows, or the interval has the length zero.
-        (0.0, Some(leading)) => leading.signum(),
-        _ => here.signum(),
+        0.0 => leading().map_or(0.0, |leading| leading.signum()),
+        _ => at_start.signum(),
     }
 }
 
@@ -504,6 +596,26 @@ mod tests {
         assert_eq!(roots(&[1e-3, 1.0, 0.1], 0.0, 1.0), []);
         assert_eq!(roots(&[3.0], 0.0, 1.0), []);
         assert_eq!(roots(&[], 0.0, 1.0), []);
+    }
+
+    #[test]
+    fn sign_changes_by_bits_are_those_one_after_the_other() {
+        let signs =
+            |bits: u32| (0..9).map(move |place| if bits >> place & 1 == 1 { -1.0 } else { 1.0 });
+        for bits in 0..512_u32 {
+            for zeros in [0, 1, 3] {
+                let sizes =
+                    (0..9).map(|place| if place < zeros { 0.0 } else { f64::from(place) + 0.5 });
+                let coefficients: Vec<f64> =
+                    signs(bits).zip(sizes).map(|(sign, size)| sign * size).collect();
+                let [one, other] = [count_sign_changes, count_sign_changes_with_zeros]
+                    .map(|count| count(&coefficients));
+                assert_eq!((one.count, one.place), (other.count, other.place), "{coefficients:?}");
+            }
+        }
+        assert_eq!(count_sign_changes(&[0.0; 3]).count, 1);
+        assert_eq!(count_sign_changes(&[1.0, 0.0, -1.0]).count, 1);
+        assert_eq!(count_sign_changes(&[]).count, 0);
     }
 
     /// Chebyshev's polynomial of degree 9 has its roots at `cos((2 k + 1) pi/18)`.

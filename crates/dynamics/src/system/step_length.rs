@@ -52,7 +52,8 @@ impl Allowance {
     /// Returns the longest step on which the series at these places are within their bounds, and
     /// whether these have values, for each lane. A series without a value bounds nothing.
     ///
-    /// Some hundred subtractions, multiplications and comparisons for each series.
+    /// A few dozen subtractions, multiplications and comparisons for each series, up to some hundred where every
+    /// term is looked at: a term that bounds no lane more than those before it is left after the first few.
     pub(super) fn bounds<const L: usize>(
         &self,
         tape: &Tape<L>,
@@ -92,6 +93,8 @@ impl Allowance {
         total: &mut [f64; L],
     ) {
         const MOST: usize = 32;
+        /// Number of terms after which a bound is looked at.
+        const AT_ONCE: usize = 4;
         let mut lower = [[0.0; L]; MOST];
         let lower = &mut lower[..self.first];
         let mut sum = [0.0; L];
@@ -101,7 +104,7 @@ impl Allowance {
                 sum[lane] += coefficients[lane];
             }
         }
-        let mut shortest = [f64::INFINITY; L];
+        let mut shortest = *least;
         for (k, bound) in (self.first..).zip(&self.bounds) {
             let mut room = [0.0; L];
             for lane in 0..L {
@@ -109,10 +112,21 @@ impl Allowance {
                 sum[lane] += series[k][lane];
             }
             let mut longest = [f64::NEG_INFINITY; L];
-            for (logarithms, reciprocal) in lower.iter().zip(self.reciprocals[..=k].iter().rev()) {
+            let reciprocals = self.reciprocals[k + 1 - self.first..=k].rchunks(AT_ONCE);
+            for (logarithms, reciprocals) in lower.chunks(AT_ONCE).zip(reciprocals) {
+                for (logarithms, reciprocal) in logarithms.iter().zip(reciprocals.iter().rev()) {
+                    for lane in 0..L {
+                        let step = (logarithms[lane] + room[lane]) * reciprocal;
+                        longest[lane] = if step > longest[lane] { step } else { longest[lane] };
+                    }
+                }
+                // What is longer in every lane than a bound before is none.
+                let mut may_bound = false;
                 for lane in 0..L {
-                    let step = (logarithms[lane] + room[lane]) * reciprocal;
-                    longest[lane] = if step > longest[lane] { step } else { longest[lane] };
+                    may_bound |= longest[lane] < shortest[lane];
+                }
+                if !may_bound {
+                    break;
                 }
             }
             for lane in 0..L {

@@ -6,11 +6,11 @@ use crate::export::{decimal, json, trajectory};
 use crate::expr::Expr;
 use crate::impact::sweep::{grid_size, grid_values};
 use crate::problem::Problem;
-use crate::report::{self, MotionSweep, TRUSTED, TrajectoryReport};
+use crate::report::{self, BasinSweep, MOST_STARTS, MotionSweep, TRUSTED, TrajectoryReport};
 use crate::system::{Integrator, PathEnd, SystemError};
 use crate::trajectory::{
     DISPLACEMENT, PoincareSection, SweptMotion, Trajectory, TrajectoryError, TrajectoryRequest,
-    in_words, sweep,
+    in_words, sweep, sweep_to_attractors,
 };
 use crate::verify::Verdict;
 use crate::wall::WallError;
@@ -367,6 +367,27 @@ fn run_sweep(course: &TrajectoryRequest, asked: &SimulateArguments) -> Result<Ou
             };
             rows.iter().enumerate().map(read).collect::<Result<_, _>>()?
         }
+        None if has_basins && shows_basins_alone(asked, total) => {
+            let [across, up] = [names[0], names[1]];
+            let bar = PartsBar::new(total, MOTIONS);
+            let found = sweep_to_attractors(course, &names, &grid, || bar.advance(1))
+                .map_err(|(number, error)| failed(number, error))?;
+            bar.finish();
+            let report = BasinSweep {
+                course,
+                names: [across, up],
+                starts: &found.starts,
+                basins: &found.basins,
+            };
+            let answer = Answer {
+                document: &report::basin_sweep(&report),
+                width: width(common.output.as_deref()),
+                picture: Some(&|| Ok(trajectory::basins_picture(&report)?)),
+                other: &no_such,
+            };
+            let note = ended_early(found.starts.len(), &found.ended, total);
+            return Ok(Outcome { partial: note.is_some(), note, ..answer.outcome(common)? });
+        }
         None => {
             let bar = PartsBar::new(total, MOTIONS);
             let motions = sweep(course, &names, &grid, || bar.advance(1))
@@ -390,19 +411,33 @@ fn run_sweep(course: &TrajectoryRequest, asked: &SimulateArguments) -> Result<Ou
     Ok(Outcome { partial: note.is_some(), note, ..answer.outcome(common)? })
 }
 
+/// Whether of so many motions their attractors alone are written, and no motion: not as numbers, and not in the other
+/// formats that a caller may ask for later.
+fn shows_basins_alone(asked: &SimulateArguments, total: usize) -> bool {
+    let is_read = matches!(asked.common.format(), Format::Csv | Format::Json);
+    total > MOST_STARTS && !is_read && !session::current().is_call()
+}
+
 /// The part that is missing of this number of motions, in words; `None` if nothing is.
 fn stopped_early(motions: &[SweptMotion], all: usize) -> Option<String> {
+    let reasons = motions.iter().map(|motion| motion.reason).enumerate();
+    let ended: Vec<_> = reasons.filter(|(_, reason)| *reason != PathEnd::Reached).collect();
+    ended_early(motions.len(), &ended, all)
+}
+
+/// The same of this number of motions, of which those of these numbers ended early.
+fn ended_early(begun: usize, ended: &[(usize, PathEnd)], all: usize) -> Option<String> {
     let kept = "stopped early, what there is is kept";
-    let interrupted = motions.iter().filter(|motion| motion.reason == PathEnd::Interrupted).count();
-    if motions.len() < all || interrupted > 0 {
+    let interrupted = ended.iter().filter(|(_, reason)| *reason == PathEnd::Interrupted).count();
+    if begun < all || interrupted > 0 {
         let cut = match interrupted {
             0 => String::new(),
             some => format!(", {some} of them not to the end"),
         };
-        return Some(format!("warning: {kept}: {} of {all} motions{cut}", motions.len()));
+        return Some(format!("warning: {kept}: {begun} of {all} motions{cut}"));
     }
-    let number = motions.iter().position(|motion| motion.reason != PathEnd::Reached)?;
-    Some(format!("warning: motion {} {kept}: {}", number + 1, in_words(motions[number].reason)))
+    let (number, reason) = ended.first()?;
+    Some(format!("warning: motion {} {kept}: {}", number + 1, in_words(*reason)))
 }
 
 /// Complete, the energy accounted for, and where there is a judge, agreed with.

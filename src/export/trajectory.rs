@@ -4,13 +4,11 @@
 use super::csv::{end, line};
 use super::figure::{CurveStyle, FigureError, Panel, Points, curve, figure, panel};
 use crate::decimal::decimal;
-use crate::report::{MotionSweep, TrajectoryReport};
+use crate::report::{BasinSweep, MotionSweep, TrajectoryReport};
 use crate::report::{event_in_words, section_in_words, wall_in_words};
 use crate::symbol::Symbol;
 use crate::trajectory::in_words;
-use crate::trajectory::{
-    Basins, Fate, PoincareSection, SweptMotion, Trajectory, TrajectoryRequest,
-};
+use crate::trajectory::{Fate, PoincareSection, SweptMotion, Trajectory, TrajectoryRequest};
 
 /// Number of points of a table or a curve if no samples are requested.
 const POINTS: u32 = 2000;
@@ -236,8 +234,15 @@ pub fn sweep_csv(sweep: &MotionSweep) -> String {
 /// As [`figure`].
 pub fn sweep_picture(sweep: &MotionSweep) -> Result<String, FigureError> {
     let course = sweep.course;
-    if let (Some(basins), [across, up]) = (sweep.basins(), sweep.names) {
-        return basins_picture(sweep, &basins, [across, up]);
+    if let (Some(basins), &[across, up]) = (sweep.basins(), sweep.names) {
+        let starts: Vec<Vec<f64>> =
+            sweep.motions.iter().map(|motion| motion.values.clone()).collect();
+        return basins_picture(&BasinSweep {
+            course,
+            names: [across, up],
+            starts: &starts,
+            basins: &basins,
+        });
     }
     let varied = sweep.names.first().map_or("", |name| name.name());
     // At impacts the places are those of the walls: velocities are drawn.
@@ -286,14 +291,14 @@ pub fn sweep_picture(sweep: &MotionSweep) -> Result<String, FigureError> {
 
 /// The starts in a plane, each in the colour of the attractor on which its motion settles, with the states of
 /// the attractors.
-fn basins_picture(
-    sweep: &MotionSweep,
-    basins: &Basins,
-    [across, up]: [&Symbol; 2],
-) -> Result<String, FigureError> {
+///
+/// # Errors
+/// As [`figure`].
+pub fn basins_picture(sweep: &BasinSweep) -> Result<String, FigureError> {
+    let &BasinSweep { course, names: [across, up], starts, basins } = sweep;
     /// Width of the axes, of which the columns take the part that the margins leave.
     const WIDTH: f64 = 790.0 / 1.1;
-    let columns = sweep.motions.chunk_by(|one, other| one.values[0] == other.values[0]).count();
+    let columns = starts.chunk_by(|one, other| one[0] == other[0]).count();
     let width = WIDTH / columns.saturating_sub(1).max(1) as f64;
     let last = CurveStyle::REGIONS;
     let look = |fate: Fate| match fate {
@@ -307,11 +312,10 @@ fn basins_picture(
         Fate::Ended => ("ends early".to_owned(), CurveStyle::outside(width)),
     };
     let mut bars: Vec<(Fate, Points)> = Vec::new();
-    let fated: Vec<(&SweptMotion, Fate)> =
-        sweep.motions.iter().zip(basins.fates.iter().copied()).collect();
-    for column in fated.chunk_by(|one, other| one.0.values[0] == other.0.values[0]) {
+    let fated: Vec<(&Vec<f64>, Fate)> = starts.iter().zip(basins.fates.iter().copied()).collect();
+    for column in fated.chunk_by(|one, other| one.0[0] == other.0[0]) {
         // Each start stands for the places up to the middle between it and the next one.
-        let height = |index: usize| column[index].0.values[1];
+        let height = |index: usize| column[index].0[1];
         let middle = |index: usize| 0.5 * (height(index) + height(index - 1));
         let end = column.len() - 1;
         let mut index = 0;
@@ -319,7 +323,7 @@ fn basins_picture(
             let (first, next) = (index, index + run.len());
             let low = if first == 0 { height(0) } else { middle(first) };
             let high = if next > end { height(end) } else { middle(next) };
-            bars.push((run[0].1, [low, high].map(|y| (column[0].0.values[0], y)).into()));
+            bars.push((run[0].1, [low, high].map(|y| (column[0].0[0], y)).into()));
             index = next;
         }
     }
@@ -329,12 +333,12 @@ fn basins_picture(
         Fate::Ended => usize::MAX,
     };
     bars.sort_by_key(|(fate, _)| order(*fate));
-    let states = &sweep.course.rates.states;
-    let place = |name: &Symbol| states.iter().position(|state| state == name).unwrap_or(0);
+    let states = &course.rates.states;
+    let place = |name: Symbol| states.iter().position(|state| *state == name).unwrap_or(0);
     let of_attractors = basins.attractors.iter().flat_map(|attractor| &attractor.states);
     // States outside of the plane of the starts would stretch it.
     let within = |index: usize, value: f64| {
-        let values = || sweep.motions.iter().map(|motion| motion.values[index]);
+        let values = || starts.iter().map(|start| start[index]);
         (values().fold(f64::INFINITY, f64::min)..=values().fold(f64::NEG_INFINITY, f64::max))
             .contains(&value)
     };
@@ -357,7 +361,7 @@ fn basins_picture(
     }
     let labels = [across, up].map(|name| name.name().replace('\'', "′"));
     let panels = [panel("Basins of attraction", [&labels[0], &labels[1]], curves, vec![])];
-    figure(&panels, &sweep_in_words(sweep.course))
+    figure(&panels, &sweep_in_words(course))
 }
 
 /// The equations of many motions, the section and the times, in words.

@@ -66,7 +66,10 @@ pub use shortest::{ShortestReport, law_certificate, shortest};
 pub use slow_equations::{SlowReport, slow_equations};
 pub use solution::solution;
 pub use stability::{StabilityReport, stability};
-pub use trajectory::{Doubt, MotionSweep, TRUSTED, TrajectoryReport, motion_sweep, trajectory};
+pub use trajectory::{
+    BasinSweep, Doubt, MOST_STARTS, MotionSweep, TRUSTED, TrajectoryReport, basin_sweep,
+    motion_sweep, trajectory,
+};
 pub(crate) use trajectory::{event_in_words, section_in_words, wall_in_words};
 
 use std::borrow::Cow;

@@ -119,8 +119,6 @@ impl TrajectoryReport<'_> {
 pub fn trajectory<'a>(report: &TrajectoryReport<'a>) -> Document<'a> {
     let motion = report.motion;
     let course = &motion.course;
-    let equation =
-        |left: &Expr| Block::Line(Cow::Owned(DerivationLine::equation(left.clone(), Expr::zero())));
     let mut sections = vec![course.equations.iter().map(equation).collect::<Vec<_>>()];
     let values = course.values.iter().map(|(name, value)| Block::Value {
         name: *name,
@@ -343,8 +341,6 @@ pub(crate) fn section_in_words(section: &PoincareSection) -> String {
 /// number of states on the section.
 pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
     let course = sweep.course;
-    let equation =
-        |left: &Expr| Block::Line(Cow::Owned(DerivationLine::equation(left.clone(), Expr::zero())));
     let mut head: Vec<&str> = sweep.names.iter().map(|name| name.name()).collect();
     let extremes = course
         .coordinates
@@ -372,31 +368,54 @@ pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
         let events = with_events.then(|| motion.events.to_string());
         numbers.chain(counted).chain(hits).chain(events).collect()
     });
-    let mut words = format!("{} motions to t = {}", sweep.motions.len(), decimal(course.duration));
-    if course.after > 0.0 {
-        words.push_str(&format!("; least and greatest from t = {} on", decimal(course.after)));
-    }
-    let mut last = vec![Block::Note(words)];
-    last.extend(course.section.as_ref().map(|section| Block::Note(section_in_words(section))));
+    let mut last = sweep_notes(course, sweep.motions.len());
     let ended = sweep.motions.iter().filter(|motion| motion.reason != PathEnd::Reached).count();
     let basins = sweep.basins();
     if ended > 0 && basins.is_none() {
         last.push(Block::Note(format!("{ended} of them end early")));
     }
-    /// Largest number of starts that are listed above their attractors.
-    const MOST_STARTS: usize = 100;
     let are_many = basins.is_some() && sweep.motions.len() > MOST_STARTS;
     let mut sections: Vec<Vec<Block>> = vec![course.equations.iter().map(equation).collect()];
     sections.extend((!are_many).then(|| vec![Block::table(head, rows)]));
     sections.push(last);
-    sections.extend(basins.map(|basins| attractors(sweep, &basins)));
+    sections.extend(basins.map(|basins| attractors(course, &basins)));
     Document { sections }
 }
 
+/// Largest number of starts whose motions are listed above their attractors.
+pub const MOST_STARTS: usize = 100;
+
+/// An equation of motion, `left = 0`.
+fn equation(left: &Expr) -> Block<'static> {
+    Block::Line(Cow::Owned(DerivationLine::equation(left.clone(), Expr::zero())))
+}
+
+/// The answer of a sweep of so many starts that their attractors alone are listed.
+pub fn basin_sweep<'a>(sweep: &BasinSweep<'a>) -> Document<'a> {
+    let course = sweep.course;
+    Document {
+        sections: vec![
+            course.equations.iter().map(equation).collect(),
+            sweep_notes(course, sweep.starts.len()),
+            attractors(course, sweep.basins),
+        ],
+    }
+}
+
+/// The number of motions and their times, and the section.
+fn sweep_notes(course: &TrajectoryRequest, motions: usize) -> Vec<Block<'static>> {
+    let mut words = format!("{motions} motions to t = {}", decimal(course.duration));
+    if course.after > 0.0 {
+        words.push_str(&format!("; least and greatest from t = {} on", decimal(course.after)));
+    }
+    let section = course.section.as_ref().map(|section| Block::Note(section_in_words(section)));
+    [Block::Note(words)].into_iter().chain(section).collect()
+}
+
 /// The attractors of motions from many starts, with how many of them settle on each.
-fn attractors(sweep: &MotionSweep, basins: &Basins) -> Vec<Block<'static>> {
+fn attractors(course: &TrajectoryRequest, basins: &Basins) -> Vec<Block<'static>> {
     let mut head = vec!["attractor", "motions", "share", "states"];
-    head.extend(sweep.course.rates.states.iter().map(|name| name.name()));
+    head.extend(course.rates.states.iter().map(|name| name.name()));
     let all = basins.fates.len().max(1) as f64;
     let rows = basins.attractors.iter().enumerate().map(|(index, attractor)| {
         let share = format!("{} %", significant(100.0 * attractor.motions as f64 / all, 3));
@@ -447,6 +466,19 @@ pub struct MotionSweep<'a> {
     pub names: &'a [Symbol],
     /// The motions, the last name varying fastest.
     pub motions: &'a [SweptMotion],
+}
+
+/// The attractors of motions from many starts to be reported.
+#[derive(Clone, Copy, Debug)]
+pub struct BasinSweep<'a> {
+    /// The common initial value problem.
+    pub course: &'a TrajectoryRequest,
+    /// The names of the two varied states of the start.
+    pub names: [Symbol; 2],
+    /// The starts, the last name varying fastest.
+    pub starts: &'a [Vec<f64>],
+    /// The attractors, and the fate of each start.
+    pub basins: &'a Basins,
 }
 
 impl MotionSweep<'_> {

@@ -18,6 +18,8 @@ mod error;
 mod event_run;
 mod events;
 mod hold;
+mod joining;
+mod neighbourhood;
 mod prepared;
 mod pulse;
 mod resting;
@@ -47,6 +49,7 @@ use error::names;
 
 pub use attractors::{Attractor, Basins, Fate};
 pub use error::TrajectoryError;
+pub use joining::{SettledStarts, sweep_to_attractors};
 pub use prepared::{PreparedTrajectory, TrajectoryEnd};
 pub use section::{Crossing, MOST_CROSSINGS, PoincareSection};
 pub use sensitivity::{DISPLACEMENT, LyapunovExponent};

@@ -10,7 +10,7 @@
 //! has to go is a fifth of that at most. (C. S. Hsu, *Cell-to-Cell
 //! Mapping*, Springer 1987, chapter 1, for basins by simulation.)
 //!
-//! In: the motions of a [sweep](super::sweep) with a section. Out: the attractors, the most frequent first, and on which each
+//! In: the motions of a [sweep](super::sweep) with a section, or of a [sweep to attractors](super::sweep_to_attractors). Out: the attractors, the most frequent first, and on which each
 //! motion settles. Cost: the number of motions times that of the attractors.
 
 use super::SweptMotion;
@@ -20,10 +20,13 @@ use crate::system::PathEnd;
 const MOST_STATES: usize = 16;
 
 /// Difference of two states, in the extent of all last states, below which they are the same.
-const SAME: f64 = 1e-3;
+pub(super) const SAME: f64 = 1e-3;
 
 /// Part of this that a motion which has settled may still have to go.
-const SETTLED: f64 = 0.2;
+pub(super) const SETTLED: f64 = 0.2;
+
+/// Part of the largest value that is varied which the extent of a state is at least.
+const SMALL: f64 = 0.1;
 
 /// A motion that repeats itself on a section, on which others settle.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +48,15 @@ pub enum Fate {
     Ended,
 }
 
+/// A motion of which the fate is asked.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Member<'a> {
+    /// One that was followed to its end.
+    Followed(&'a SweptMotion),
+    /// One that has the fate of an earlier one, by its number.
+    Joins(usize),
+}
+
 /// The attractors of many motions and the fate of each of these.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Basins {
@@ -57,13 +69,34 @@ pub struct Basins {
 impl Basins {
     /// Finds the attractors of motions that have states on a section.
     pub fn new(motions: &[SweptMotion]) -> Self {
-        let sizes = extent(motions);
+        let members: Vec<Member> = motions.iter().map(Member::Followed).collect();
+        Self::of_members(&members, largest_value(motions.iter().map(|motion| &motion.values)))
+    }
+
+    /// The same of motions of which some join others; `largest` is the largest value that is varied.
+    pub(super) fn of_members(members: &[Member], largest: f64) -> Self {
+        let followed = members.iter().filter_map(|member| match member {
+            Member::Followed(motion) => Some(*motion),
+            Member::Joins(_) => None,
+        });
+        let sizes = extent(&followed.collect::<Vec<_>>(), largest, 1.0);
         let is_same = |one: &[f64], other: &[f64]| {
             one.iter().zip(other).zip(&sizes).all(|((a, b), size)| (a - b).abs() <= SAME * size)
         };
         let mut attractors: Vec<Attractor> = Vec::new();
-        let mut fates = Vec::with_capacity(motions.len());
-        for motion in motions {
+        let mut fates: Vec<Fate> = Vec::with_capacity(members.len());
+        for member in members {
+            let motion = match member {
+                Member::Followed(motion) => *motion,
+                Member::Joins(earlier) => {
+                    let fate = fates.get(*earlier).copied().unwrap_or(Fate::Unsettled);
+                    if let Fate::Settled(place) = fate {
+                        attractors[place].motions += 1;
+                    }
+                    fates.push(fate);
+                    continue;
+                }
+            };
             if motion.reason != PathEnd::Reached {
                 fates.push(Fate::Ended);
                 continue;
@@ -133,12 +166,21 @@ fn way_to_go(last: &[&[f64]], n: usize, sizes: &[f64]) -> f64 {
     }
 }
 
+/// The largest absolute value of what is varied.
+pub(super) fn largest_value<'a>(values: impl Iterator<Item = &'a Vec<f64>>) -> f64 {
+    values.flatten().map(|value| value.abs()).fold(0.0, f64::max)
+}
+
+/// Bounds from below of the extents once there are more motions: the states of these stay, and where they are one
+/// state others may lie a thousandth of its size apart.
+pub(super) fn least_extents(motions: &[&SweptMotion], largest: f64) -> Vec<f64> {
+    extent(motions, largest, SAME)
+}
+
 /// The extent of the last states of all motions that did not end early, for each state; at least a small part of
-/// what is varied, where a state dies out.
-fn extent(motions: &[SweptMotion]) -> Vec<f64> {
-    const SMALL: f64 = 0.1;
-    let starts = motions.iter().flat_map(|motion| &motion.values);
-    let least = SMALL * starts.map(|value| value.abs()).fold(0.0, f64::max);
+/// what is varied, where a state dies out. Where all are one state it is this part of its size.
+fn extent(motions: &[&SweptMotion], largest: f64, part: f64) -> Vec<f64> {
+    let least = SMALL * largest;
     let complete = || motions.iter().filter(|motion| motion.reason == PathEnd::Reached);
     let states = || complete().flat_map(|motion| motion.crossings.iter().rev().take(MOST_STATES));
     let count = complete().map(|motion| motion.state.len()).max().unwrap_or(0);
@@ -147,9 +189,8 @@ fn extent(motions: &[SweptMotion]) -> Vec<f64> {
         let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
             [low.min(value), high.max(value)]
         });
-        // Where all are one state, its size.
         let size = high.abs().max(low.abs());
-        let extent = if high - low > SAME * size { high - low } else { size };
+        let extent = if high - low > SAME * size { high - low } else { part * size };
         extent.max(least)
     };
     (0..count).map(of_state).collect()

@@ -61,27 +61,7 @@ pub fn sweep(
     grid: &[Vec<f64>],
     progress: impl Fn() + Sync,
 ) -> Result<Vec<SweptMotion>, (usize, TrajectoryError)> {
-    let at = |values: &[f64]| {
-        // The energies of a sweep are not used, and nothing before the time `after` but by a section
-        // on which a motion may turn back, which looks at all of its turns.
-        let keep_from = match course.section {
-            Some(PoincareSection::Rising(_)) => f64::NEG_INFINITY,
-            Some(
-                PoincareSection::Every(_) | PoincareSection::Impacts | PoincareSection::Events,
-            )
-            | None => course.after,
-        };
-        let mut course = TrajectoryRequest { energy: None, keep_from, ..course.clone() };
-        for (name, value) in names.iter().zip(values) {
-            match course.rates.states.iter().position(|state| state == name) {
-                Some(place) => course.start[place] = *value,
-                None => {
-                    course.values.insert(*name, *value);
-                }
-            }
-        }
-        course
-    };
+    let at = |values: &[f64]| course_at(course, names, values);
     // The equations are compiled once, if possible, and take other numbers for each motion.
     let ready = grid.first().and_then(|first| at(first).ready(Integrator::Taylor).ok());
     // The states on a section are those of pieces; the least and the greatest values are found on the way.
@@ -129,4 +109,29 @@ pub fn sweep(
     let motions: Result<Vec<Vec<SweptMotion>>, _> =
         par_map(&groups, together).into_iter().collect();
     Ok(motions?.into_iter().flatten().collect())
+}
+
+/// The course at these values of the names.
+pub(super) fn course_at(
+    course: &TrajectoryRequest,
+    names: &[Symbol],
+    values: &[f64],
+) -> TrajectoryRequest {
+    // The energies of a sweep are not used, and nothing before the time `after` but by a section
+    // on which a motion may turn back, which looks at all of its turns.
+    let keep_from = match course.section {
+        Some(PoincareSection::Rising(_)) => f64::NEG_INFINITY,
+        Some(PoincareSection::Every(_) | PoincareSection::Impacts | PoincareSection::Events)
+        | None => course.after,
+    };
+    let mut course = TrajectoryRequest { energy: None, keep_from, ..course.clone() };
+    for (name, value) in names.iter().zip(values) {
+        match course.rates.states.iter().position(|state| state == name) {
+            Some(place) => course.start[place] = *value,
+            None => {
+                course.values.insert(*name, *value);
+            }
+        }
+    }
+    course
 }

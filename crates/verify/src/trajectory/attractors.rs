@@ -109,6 +109,11 @@ impl Basins {
                 fates.push(Fate::Unsettled);
                 continue;
             };
+            // A slow motion may seem to repeat itself after n states sooner than after one, though all n are the same.
+            let is_cycle = |fewer: &usize| {
+                n.is_multiple_of(*fewer) && (*fewer..n).all(|k| is_same(last[k], last[k - fewer]))
+            };
+            let n = (1..n).find(is_cycle).unwrap_or(n);
             let states: Vec<&[f64]> = last[..n].iter().rev().copied().collect();
             let is_known = |known: &Attractor| {
                 known.states.len() == n

@@ -171,12 +171,13 @@ def impact(
             gamma*d^(3/2).
         contact: The law of the contact in the derived phases, such as power-law; without it
             exact; all for a table of every law; or one that loses energy ("kelvin-voigt
-            restitution=0.8", hunt-crossley, kelvin-voigt-no-pull).
+            restitution=0.8", hunt-crossley, kelvin-voigt-no-pull), "all restitution=0.8" for a
+            table of those.
         left: The barrier is on the left of xc, and the release at x = A.
         compare: Every method in one table, each at its lowest order that passes.
         certify: Prove the numbers of the impact of a pendulum and a barrier whose force is a
-            power of the depth, with a loss by Hunt and Crossley or in a dashpot, and how far each
-            closed form is off.
+            power of the depth or a sum of them, with a loss by Hunt and Crossley or in a dashpot,
+            and how far each closed form is off.
         tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
         timeout: Give up after so many seconds.
         at: Values of symbols whose names are options or no words, `{"small": 1}`.

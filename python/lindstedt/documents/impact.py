@@ -351,6 +351,42 @@ ContactLawRow.FIELDS = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class LossyLawRow(Document):
+    """One law of a contact that loses energy, in closed form without the force of the swing, beside
+    Runge-Kutta with it.
+
+    Attributes:
+        law: Its name, as in a problem file.
+        stiffness: The stiffness: the force per unit of mass at depth one at rest; of a spring
+            with a dashpot that of equal energy at the greatest depth of the barrier without loss.
+        lambda_: The damping lambda, time per unit of depth; of a dashpot in units of time.
+        duration: The time from touch to release, in units of time.
+        penetration: The greatest depth.
+        peak_force: The greatest force of the contact, per unit of mass.
+        restitution: The speed after the contact over that before.
+    """
+
+    law: Literal["hunt-crossley", "kelvin-voigt", "kelvin-voigt-no-pull"]
+    stiffness: float
+    lambda_: float
+    duration: Judged
+    penetration: Judged
+    peak_force: Judged
+    restitution: Judged
+
+
+LossyLawRow.FIELDS = (
+    ("law", "law", None),
+    ("stiffness", "stiffness", None),
+    ("lambda_", "lambda", None),
+    ("duration", "duration", Judged.from_json),
+    ("penetration", "penetration", Judged.from_json),
+    ("peak_force", "peak_force", Judged.from_json),
+    ("restitution", "restitution", Judged.from_json),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Line(Document):
     """The line slope * x + constant that replaces (x - barrier)^(3/2), per unit of gamma.
 
@@ -616,6 +652,8 @@ class Impact(Answer):
         contact_damping: What the contact loses; null where it loses nothing.
         contact_laws: Every law of the contact at the speed of the touch by the energy; null where
             they are not asked for.
+        lossy_laws: Every law of a contact that loses energy, for one restitution at the speed of
+            the touch by the energy; absent where they are not asked for.
         time_to_contact: The time from the release to the touch, in units of time.
         period: The time from release to release, in units of time; where the contact loses
             energy, to the turning point after it.
@@ -637,6 +675,7 @@ class Impact(Answer):
     contact: Contact
     contact_damping: ContactDamping | None
     contact_laws: tuple[ContactLawRow, ...] | None
+    lossy_laws: tuple[LossyLawRow, ...] | None
     time_to_contact: Quantity
     period: Quantity
     verification: ImpactVerification
@@ -656,8 +695,10 @@ Impact.FIELDS = (
     ("contact", "contact", Contact.from_json),
     ("contact_damping", "contact_damping", ContactDamping.from_json),
     ("contact_laws", "contact_laws", several(ContactLawRow.from_json)),
+    ("lossy_laws", "lossy_laws", several(LossyLawRow.from_json)),
     ("time_to_contact", "time_to_contact", Quantity.from_json),
     ("period", "period", Quantity.from_json),
     ("verification", "verification", ImpactVerification.from_json),
     ("si", "si", Si.from_json),
 )
+Impact.OPTIONAL = frozenset(['lossy_laws'])

@@ -25,7 +25,7 @@ pub struct LossyRow {
     /// Duration, greatest depth, greatest force of the contact per unit of mass, and restitution; in units of the
     /// equation.
     pub closed_form: [f64; 4],
-    /// The same by Runge-Kutta, the force of the swing in it.
+    /// These four numbers by Runge-Kutta, the force of the swing in the contact.
     pub runge_kutta: [f64; 4],
 }
 

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! period n of a motion:  the least n with which |y_k - y_(k-n)| is so small for its last states y_k on the section, and
-//!                        shrinks so fast, that it still has less than a part of that way to go
+//!                        shrinks so fast, that it still has less than a part of that way to go; of n states that are
+//!                        all the same one is counted
 //! one attractor:         the same n, and the last n states in the same order from some state on
 //! ```
 //!
@@ -73,7 +74,7 @@ impl Basins {
         Self::of_members(&members, largest_value(motions.iter().map(|motion| &motion.values)))
     }
 
-    /// The same of motions of which some join others; `largest` is the largest value that is varied.
+    /// Finds the attractors of motions of which some join others; `largest` is the largest value that is varied.
     pub(super) fn of_members(members: &[Member], largest: f64) -> Self {
         let followed = members.iter().filter_map(|member| match member {
             Member::Followed(motion) => Some(*motion),

@@ -324,7 +324,7 @@ struct LookedAt {
     steps: usize,
 }
 
-/// What is seen of a motion.
+/// The course of a motion as the section shows it.
 enum Look {
     /// It settles on the attractor of the motion of this number.
     Joins(usize),

@@ -55,7 +55,7 @@ pub(super) struct LossyContact {
 /// The law of a loss.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum LossLaw {
-    /// That of Hunt and Crossley.
+    /// The law of Hunt and Crossley: the elastic force times 1 + lambda d'.
     HuntCrossley,
     /// A dashpot beside a spring.
     Dashpot {
